@@ -1,0 +1,71 @@
+"""fogproof proves Monte Carlo volume estimators right or wrong.
+
+The two calls every user meets first are `check_sampler` and `check_estimator`; the oracle is `fogproof.analytic`.
+Importing this package loads NumPy alone; everything heavier loads where it is used.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+from fogproof.contracts import Draw, Draws, Estimator, Reference, Sampler
+from fogproof.domains import Discrete, HalfLine, Interval, RealLine, UnitDisk, UnitHemisphere, UnitSphere, UnitSquare
+from fogproof.errors import FogproofError
+from fogproof.scene import HenyeyGreenstein, Isotropic, Medium, PointLight, Ray, Rayleigh, Scene
+
+if TYPE_CHECKING:
+    from fogproof.checks import Finding, Verdict, check_estimator, check_sampler
+    from fogproof.scene.files import read_scene
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "Discrete",
+    "Draw",
+    "Draws",
+    "Estimator",
+    "Finding",
+    "FogproofError",
+    "HalfLine",
+    "HenyeyGreenstein",
+    "Interval",
+    "Isotropic",
+    "Medium",
+    "PointLight",
+    "Ray",
+    "Rayleigh",
+    "RealLine",
+    "Reference",
+    "Sampler",
+    "Scene",
+    "UnitDisk",
+    "UnitHemisphere",
+    "UnitSphere",
+    "UnitSquare",
+    "Verdict",
+    "check_estimator",
+    "check_sampler",
+    "read_scene",
+]
+
+_LAZY = {
+    "check_sampler": "fogproof.checks",
+    "check_estimator": "fogproof.checks",
+    "Verdict": "fogproof.checks",
+    "Finding": "fogproof.checks",
+    "read_scene": "fogproof.scene.files",
+}
+_SUBPACKAGES = {"adapters", "analytic", "catalogue", "checks", "estimators", "reports", "scene"}
+
+
+def __getattr__(name: str) -> Any:
+    if name in _LAZY:
+        return getattr(importlib.import_module(_LAZY[name]), name)
+    if name in _SUBPACKAGES:
+        return importlib.import_module(f"fogproof.{name}")
+    raise AttributeError(f"module 'fogproof' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_LAZY, *_SUBPACKAGES})

@@ -1,0 +1,76 @@
+"""The one hierarchy of errors: each carries a code for programs and a sentence for people."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+
+class FogproofError(Exception):
+    """Base of every error a user can cause: `code` is stable, `path` names the argument at fault, if any."""
+
+    code: ClassVar[str] = "error"
+
+    def __init__(self, message: str, path: str = "") -> None:
+        super().__init__(message)
+        self.message = message
+        self.path = path
+
+    def to_dict(self) -> dict[str, str]:
+        """Return the JSON form: `{"code", "message", "path"}`."""
+        return {"code": self.code, "message": str(self), "path": self.path}
+
+
+class InvalidValueError(FogproofError, ValueError):
+    """An argument breaks a rule: the message names argument, rule, what came instead, and the fix.
+
+    It is a `ValueError` too, so that pydantic collects it with the place in the file where it happened.
+    """
+
+    code = "invalid-value"
+
+    def __init__(self, argument: str, rule: str, got: Any, fix: str = "") -> None:
+        self.argument, self.rule, self.got, self.fix = argument, rule, got, fix
+        super().__init__(f"{argument} {rule}, got {shorten(got)}" + (f"; {fix}" if fix else ""), argument)
+
+    def inside(self, place: str, origin: str) -> InvalidValueError:
+        """Return the same complaint about an argument that stands at `place` of the file or request `origin`."""
+        moved = InvalidValueError(self.argument, self.rule, self.got, self.fix)
+        fix = f"; {self.fix}" if self.fix else ""
+        moved.args = (f"{origin}: {self.argument} {self.rule}, got {shorten(self.got)} in {place}{fix}",)
+        moved.path = place if place.endswith(self.argument) else f"{place}.{self.argument}"
+        return moved
+
+
+class InvalidInputError(FogproofError):
+    """A file or request cannot be read, parsed, or has a wrong or missing key."""
+
+    code = "invalid-input"
+
+
+class UnsupportedError(FogproofError):
+    """A valid question that no method here can answer; the message says which ones it can."""
+
+    code = "unsupported"
+
+
+class NotInstalledError(FogproofError):
+    """An optional program or package is not there; the message is the line that installs it."""
+
+    code = "not-installed"
+
+    def __init__(self, package: str, extra: str) -> None:
+        super().__init__(
+            f"{package} is not installed; install it with: python -m pip install 'fogproof[{extra}]'", package
+        )
+
+
+class SubjectError(FogproofError):
+    """What was to be checked raised, or returned something that breaks its contract."""
+
+    code = "subject-failed"
+
+
+def shorten(value: Any, limit: int = 80) -> str:
+    """Return `repr(value)`, at most `limit` characters of it, arrays and NumPy scalars as plain numbers."""
+    text = repr(value.tolist()) if hasattr(value, "tolist") else repr(value)
+    return text if len(text) <= limit else text[: limit - 3] + "..."

@@ -1,0 +1,104 @@
+"""Scenes and requests from TOML and JSON: pydantic checks the structure, the dataclasses check the values.
+
+`inf` is a TOML number; JSON has none, so the string "inf" stands for it there.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import tomllib
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from fogproof.errors import InvalidInputError, InvalidValueError, shorten
+from fogproof.scene.scenes import Scene
+
+
+def read_scene(path: str | Path) -> Scene:
+    """Read a scene from a TOML file. Every fault is a `FogproofError` that names the file and the key."""
+    path = Path(path)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
+        raise InvalidInputError(f"cannot read the scene file {path}: {reason}", str(path)) from None
+    try:
+        table = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise InvalidInputError(f"{path} is not valid TOML: {error}", str(path)) from None
+    return read_fields({"scene": Scene}, {"scene": table}, str(path))["scene"]
+
+
+def read_fields(types: dict[str, Any], data: Any, origin: str) -> dict[str, Any]:
+    """Return `data` with each key built as its type in `types`; all keys of plain types are required.
+
+    types   name -> a type, or (type, default)
+    data    a mapping from a JSON or TOML parser
+    origin  where it came from, for messages
+    """
+    import pydantic
+
+    if not isinstance(data, dict):
+        raise InvalidInputError(f"{origin}: must be a table of keys, got {shorten(data)}")
+    try:
+        model = _model(tuple(types.items())).model_validate_json(json.dumps(_with_infinities(data)))
+    except pydantic.ValidationError as error:
+        raise _complaint(error, data, origin) from None
+    return {name: getattr(model, name) for name in types}
+
+
+@cache
+def _model(types: tuple[tuple[str, Any], ...]) -> Any:
+    import pydantic
+
+    fields: dict[str, Any] = {name: kind if isinstance(kind, tuple) else (kind, ...) for name, kind in types}
+    return pydantic.create_model("Input", __config__=pydantic.ConfigDict(extra="forbid", strict=True), **fields)
+
+
+def _with_infinities(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _with_infinities(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_with_infinities(item) for item in value]
+    return math.inf if value == "inf" else value
+
+
+def _complaint(error: Any, data: Any, origin: str) -> InvalidInputError | InvalidValueError:
+    """Turn pydantic's report into one sentence; the first fault is told, the others are counted."""
+    faults = {_place(fault["loc"], data): fault for fault in reversed(error.errors())}
+    place, fault = list(faults.items())[-1]
+    more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
+    cause = fault.get("ctx", {}).get("error")
+    if isinstance(cause, InvalidValueError):
+        return cause.inside(place, origin)
+    reasons = {
+        "extra_forbidden": "is not a known key",
+        "unexpected_keyword_argument": "is not a known key",
+        "missing": "is missing",
+        "missing_argument": "is missing",
+        "union_tag_not_found": "needs a key 'kind'",
+    }
+    if fault["type"] == "union_tag_invalid":
+        reason = f"has kind {shorten(fault['ctx']['tag'])}; known are {fault['ctx']['expected_tags']}"
+    else:
+        reason = reasons.get(fault["type"], f"{_lower(fault['msg'])}, got {shorten(fault['input'])}")
+    return InvalidInputError(f"{origin}: {place} {reason}{more}", place)
+
+
+def _place(loc: tuple[str | int, ...], data: Any) -> str:
+    """Return the path of a fault as the user wrote it, without the names of types that pydantic puts in between."""
+    parts: list[str] = []
+    for step, part in enumerate(loc):
+        present = part in data if isinstance(data, dict) else isinstance(data, list) and part in range(len(data))
+        if present:
+            data = data[part]
+        elif step < len(loc) - 1 or not isinstance(data, dict) or part == data.get("kind"):
+            continue
+        parts.append(str(part))
+    return ".".join(parts)
+
+
+def _lower(text: str) -> str:
+    return text[:1].lower() + text[1:]

@@ -1,0 +1,27 @@
+"""Unions in files: a table says which of several types it is by its key `kind`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class ByKind:
+    """Annotation that tells pydantic to choose the type by `kind`; pydantic is imported only when a file is read."""
+
+    types: dict[str, type]
+
+    __hash__ = object.__hash__
+
+    def __get_pydantic_core_schema__(self, _source: Any, handler: Any) -> Any:
+        from pydantic_core import core_schema
+
+        def without_kind(table: Any) -> Any:
+            return {key: value for key, value in table.items() if key != "kind"}
+
+        choices: dict[Any, Any] = {
+            kind: core_schema.no_info_before_validator_function(without_kind, handler.generate_schema(cls))
+            for kind, cls in self.types.items()
+        }
+        return core_schema.tagged_union_schema(choices, discriminator="kind")

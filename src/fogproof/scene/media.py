@@ -1,0 +1,57 @@
+"""Participating media. Coefficients are in 1/m; a tuple has one value a colour or wavelength channel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from fogproof.errors import InvalidValueError
+from fogproof.scene.phase_functions import HenyeyGreenstein, Isotropic, PhaseFunction, PhaseFunctionField, Rayleigh
+from fogproof.validate import Channels, channel_count, nonnegative_channels
+
+
+@dataclass(frozen=True)
+class Medium:
+    """A homogeneous medium.
+
+    sigma_a   absorption coefficient [1/m]
+    sigma_s   scattering coefficient [1/m]
+    phase     phase function
+    emission  emitted radiance L_e [W/(m^2 sr)]; the rendering equation multiplies it by sigma_a
+    """
+
+    sigma_a: Channels
+    sigma_s: Channels
+    phase: PhaseFunctionField = field(default_factory=Isotropic)
+    emission: Channels = 0.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "sigma_a", nonnegative_channels("sigma_a", self.sigma_a, "1/m"))
+        object.__setattr__(self, "sigma_s", nonnegative_channels("sigma_s", self.sigma_s, "1/m"))
+        object.__setattr__(self, "emission", nonnegative_channels("emission", self.emission, "W/(m^2 sr)"))
+        if not isinstance(self.phase, PhaseFunction):
+            raise InvalidValueError(
+                "phase",
+                "must be a phase function",
+                self.phase,
+                f"one of {Isotropic()}, {HenyeyGreenstein(0.5)}, {Rayleigh()}",
+            )
+        channel_count(sigma_a=self.sigma_a, sigma_s=self.sigma_s, emission=self.emission)
+
+    @property
+    def sigma_t(self) -> np.ndarray:
+        """Extinction coefficient sigma_a + sigma_s [1/m], () or (channels,)."""
+        return np.add(self.sigma_a, self.sigma_s)
+
+    @property
+    def albedo(self) -> np.ndarray:
+        """Single-scattering albedo sigma_s / sigma_t, () or (channels,); 0 where the medium is empty."""
+        sigma_t = self.sigma_t
+        return np.divide(self.sigma_s, sigma_t, out=np.zeros_like(sigma_t), where=sigma_t > 0)
+
+    @property
+    def mean_free_path(self) -> np.ndarray:
+        """1 / sigma_t [m], () or (channels,); inf where the medium is empty."""
+        sigma_t = self.sigma_t
+        return np.divide(1.0, sigma_t, out=np.full_like(sigma_t, np.inf), where=sigma_t > 0)

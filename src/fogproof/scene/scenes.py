@@ -1,0 +1,54 @@
+"""A scene: a medium, the ray that looks through it, what lights it, and how far scattering is followed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+from fogproof.errors import InvalidValueError
+from fogproof.scene.lights import PointLight
+from fogproof.scene.media import Medium
+from fogproof.scene.rays import Ray
+from fogproof.validate import Channels, channel_count, nonnegative_channels
+
+Scattering = Literal["none", "ambient", "single"]
+"""The levels of the lecture: no in-scattering, a constant ambient, one bounce from the light."""
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """What a camera ray sees.
+
+    scattering  how far in-scattering is followed: "none", "ambient" or "single"
+    light       needed by "single"
+    ambient     in-scattered radiance L_i [W/(m^2 sr)] that "ambient" takes as constant
+    background  radiance of the surface at the ray's end [W/(m^2 sr)]
+    """
+
+    medium: Medium
+    ray: Ray
+    scattering: Scattering = "none"
+    light: PointLight | None = None
+    ambient: Channels = 0.0
+    background: Channels = 0.0
+
+    def __post_init__(self) -> None:
+        if self.scattering not in get_args(Scattering):
+            raise InvalidValueError("scattering", f"must be one of {', '.join(get_args(Scattering))}", self.scattering)
+        object.__setattr__(self, "ambient", nonnegative_channels("ambient", self.ambient, "W/(m^2 sr)"))
+        object.__setattr__(self, "background", nonnegative_channels("background", self.background, "W/(m^2 sr)"))
+        if self.scattering == "single" and self.light is None:
+            raise InvalidValueError(
+                "light",
+                "must be given when scattering is 'single'",
+                None,
+                "add a [light] table, or set scattering = 'none'",
+            )
+        channel_count(
+            sigma_a=self.medium.sigma_a,
+            sigma_s=self.medium.sigma_s,
+            emission=self.medium.emission,
+            intensity=self.light.intensity if self.light else 0.0,
+            ambient=self.ambient,
+            background=self.background,
+        )

@@ -1,0 +1,107 @@
+"""Rules for arguments, stated once: each function returns the clean value or raises `InvalidValueError`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from fogproof.errors import InvalidValueError, shorten
+
+Channels = float | tuple[float, ...]
+"""A grey value, or one value a colour or wavelength channel."""
+
+
+def as_float_array(name: str, value: Any) -> np.ndarray:
+    """Return `value` as a float64 array, or say what cannot be read as numbers."""
+    try:
+        array = np.asarray(value)
+        if array.dtype.kind not in "iuf":
+            raise TypeError(array.dtype)
+        return array.astype(np.float64)
+    except (TypeError, ValueError, OverflowError):
+        raise InvalidValueError(name, "must be a number or an array of numbers", value) from None
+
+
+def first_bad(array: np.ndarray, good: np.ndarray) -> Any:
+    """Return the first value of `array` where `good` fails, for an error message."""
+    return array[~good].ravel()[0].item()
+
+
+def require(name: str, array: np.ndarray, good: np.ndarray | bool, rule: str, fix: str = "") -> None:
+    """Raise `InvalidValueError` naming the first value of `array` where `good` is false."""
+    good = np.broadcast_to(good, array.shape)
+    if not good.all():
+        raise InvalidValueError(name, rule, first_bad(array, good), fix)
+
+
+def number(
+    name: str,
+    value: Any,
+    rule: str,
+    low: float = -np.inf,
+    high: float = np.inf,
+    *,
+    open_ends: bool = False,
+    fix: str = "",
+) -> float:
+    """Return a single finite number in [low, high], or in (low, high) with `open_ends`."""
+    array = as_float_array(name, value)
+    if array.ndim:
+        raise InvalidValueError(name, "must be a single number", value)
+    x = float(array)
+    inside = low < x < high if open_ends else low <= x <= high
+    if not (np.isfinite(x) and inside):
+        raise InvalidValueError(name, rule, x, fix)
+    return x
+
+
+def nonnegative_channels(name: str, value: Any, unit: str) -> Channels:
+    """Return a finite value >= 0, or a tuple of them with one a channel."""
+    array = as_float_array(name, value)
+    if array.ndim > 1 or array.size == 0:
+        raise InvalidValueError(name, "must be a number or a list with one number a channel", value)
+    require(name, array, np.isfinite(array) & (array >= 0), f"must be finite and >= 0 [{unit}]")
+    return float(array) if array.ndim == 0 else tuple(array.tolist())
+
+
+def points(name: str, value: Any) -> np.ndarray:
+    """Return read-only (..., 3) coordinates, all finite."""
+    array = as_float_array(name, value)
+    if array.ndim == 0 or array.shape[-1] != 3:
+        raise InvalidValueError(
+            name,
+            "must have three coordinates in its last axis",
+            list(array.shape),
+            f"pass [x, y, z]; the value was {shorten(value)}",
+        )
+    require(name, array, np.isfinite(array), "must be finite")
+    array.flags.writeable = False
+    return array
+
+
+def unit_vectors(name: str, value: Any) -> np.ndarray:
+    """Return read-only (..., 3) unit vectors.
+
+    A length off by less than 1e-6 (a vector normalised in single precision) is normalised again; more is an error.
+    """
+    array = points(name, value)
+    length = np.sqrt(np.sum(array * array, axis=-1))
+    require(name, length, np.abs(length - 1) < 1e-6, "must have unit length", "divide it by its length")
+    array = np.where(length[..., None] == 1, array, array / length[..., None])
+    array.flags.writeable = False
+    return array
+
+
+def channel_count(**values: Channels) -> int | None:
+    """Return how many channels the named values have together, None if all are grey; unequal counts are an error."""
+    counts = {name: len(value) for name, value in values.items() if isinstance(value, tuple)}
+    if len(set(counts.values())) > 1:
+        listed = ", ".join(f"{name} has {n}" for name, n in counts.items())
+        raise InvalidValueError(
+            next(iter(counts)),
+            "must have as many channels as its companions",
+            listed,
+            "give one number for grey, or equally many everywhere",
+        )
+    return next(iter(counts.values()), None)
