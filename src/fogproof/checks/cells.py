@@ -10,7 +10,7 @@ import numpy as np
 from fogproof.checks.charts import Chart
 from fogproof.checks.quadrature import integrate_boxes
 
-_GRID = {1: (512,), 2: (32, 16)}
+_GRID = {1: (1024,), 2: (64, 16)}
 _COUNT_PER_CELL = 64  # samples expected in a cell, at least, on average
 
 
@@ -24,6 +24,8 @@ class Cells:
     mass_error  (cells…) bound on its error
     total       integral of the pdf over the whole domain
     total_error bound on its error
+    evaluations of the pdf that it took
+    complete    True if every point of the domain has a cell of its own
     """
 
     edges: tuple[np.ndarray, ...]
@@ -33,6 +35,12 @@ class Cells:
     total: float
     total_error: float
     evaluations: int
+    complete: bool = False
+
+    @property
+    def gap(self) -> float:
+        """The largest probability between neighbouring edges of a line: 0 where the edges separate all its points."""
+        return 0.0 if self.complete else float(np.max(self.mass, initial=0.0))
 
     def count(self, coordinates: np.ndarray) -> np.ndarray:
         """Return (cells…) how many of the (n, k) coordinates fall in each cell."""

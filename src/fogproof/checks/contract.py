@@ -176,7 +176,7 @@ class Watch:
                 wrong,
                 lambda i, v=values, q=point: (
                     f"sample returned {v[i]:.9g} at the atom {q:g}, declared {subject.atoms[q]:.9g}"
-                ),  # type: ignore[misc]
+                ),
                 len(wrong),
             )
 

@@ -61,11 +61,19 @@ def _pool(expected: np.ndarray, least: float) -> np.ndarray:
 
 
 def kolmogorov(
-    name: str, label: str, counts: np.ndarray, mass: np.ndarray, mass_error: np.ndarray, n: int, alpha: float
+    name: str,
+    label: str,
+    counts: np.ndarray,
+    mass: np.ndarray,
+    mass_error: np.ndarray,
+    n: int,
+    alpha: float,
+    gap: float,
 ) -> Finding:
-    """Kolmogorov's distance on the edges of a marginal's cells, judged by Massart's inequality (1990): never too often.
+    """Kolmogorov's distance on the edges of a marginal's cells, judged by Massart's inequality (1990).
 
-    counts, mass, mass_error are (cells,). The p-value is an upper bound, valid for every n.
+    counts, mass, mass_error are (cells,). The p-value is an upper bound, valid for every n. Between two edges the distance can be
+    larger by the probability between them: `gap` is the largest, and the resolution counts it.
     """
     difference = np.abs(np.cumsum(counts) / n - np.cumsum(mass))
     distance = float(np.max(np.maximum(difference - np.cumsum(mass_error), 0)))

@@ -144,8 +144,8 @@ def _student(name: str, what: str, data: Moments, reference: float, error: float
     if not trusted:
         enough = math.ceil(data.n * max(growth * needed**3 / LARGEST_CORRECTION, 1) ** 2)
         message += (
-            f"; the samples are too skewed for a test at alpha = {alpha:.1g} (skewness {data.skewness:.3g}, largest sample has"
-            f" {data.largest_share:.1%} of the variance): about {max(enough, 4 * data.n)} samples are needed, if the variance is finite"
+            f"; too skewed for a test at alpha = {alpha:.1g} (skewness {data.skewness:.3g}, the largest sample has"
+            f" {data.largest_share:.1%} of the variance): ask for about {max(enough, 4 * data.n)} samples"
         )
         return Finding(
             name, "inconclusive", message, None, alpha, False, z, effect, _resolution(what, data, error, alpha)

@@ -34,7 +34,7 @@ from fogproof.domains import Discrete, Domain, HalfLine, Interval, RealLine
 from fogproof.errors import InvalidValueError
 from fogproof.validate import number
 
-_PILOT = 1 << 13  # samples that set the edges of cells; they are not counted in them
+_PILOT = 1 << 14  # samples that set the edges of cells; they are not counted in them
 _BUDGET = 1_500_000  # evaluations of the pdf for the masses of all cells
 _TOLERANCE: dict[Precision, float] = {"float64": 1e-8, "float32": 1e-6}  # wanted error of the integral of the pdf
 _MOST_DIMENSIONS_AT_EDGES = 4  # 4^dimensions combinations of edge uniforms are tried
@@ -169,7 +169,9 @@ def _discrete(subject: Subject) -> tuple[Callable[[np.ndarray], np.ndarray], Cel
     n = subject.domain.n
     mass = subject.density(np.arange(n, dtype=np.float64))
     error = np.full(n, 4 * subject.roundoff) * mass
-    cells = Cells((np.arange(n + 1) - 0.5,), ("x",), mass, error, float(mass.sum()), float(error.sum()), n)
+    cells = Cells(
+        (np.arange(n + 1) - 0.5,), ("x",), mass, error, float(mass.sum()), float(error.sum()), n, complete=True
+    )
     return (lambda x: x[:, None]), cells
 
 
@@ -244,14 +246,14 @@ def _goodness(
         observed = np.append(counts, np.array(list(hits.values()), dtype=float))
         mass, error = np.append(cells.mass, extra), np.append(cells.mass_error, 4e-16 * extra)
         group = np.append(np.arange(counts.size) * 16 // counts.size, 16 + np.arange(len(extra)))
-        findings.append(kolmogorov("distribution", "x", counts, cells.mass, cells.mass_error, n, alpha))
+        findings.append(kolmogorov("distribution", "x", counts, cells.mass, cells.mass_error, n, alpha, cells.gap))
         o, m, e = (np.bincount(group, values) for values in (observed, mass, error))
         findings.append(chi_square("chi-square, coarse", o, m, e, n, alpha))
         findings.append(chi_square("chi-square, fine", observed, mass, error, n, alpha))
     else:
         for axis, label in enumerate(cells.labels):
             o, m, e = (values.sum(axis=1 - axis) for values in (counts, cells.mass, cells.mass_error))
-            findings.append(kolmogorov(f"distribution of {label}", label, o, m, e, n, alpha))
+            findings.append(kolmogorov(f"distribution of {label}", label, o, m, e, n, alpha, float(m.max())))
             findings.append(chi_square(f"chi-square in {label}", o, m, e, n, alpha))
         findings.append(chi_square("chi-square, joint", counts, cells.mass, cells.mass_error, n, alpha))
     for point, probability in atoms.items():
