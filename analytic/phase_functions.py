@@ -1,7 +1,7 @@
 """Phase functions: density and distribution of the forward cosine, for every kind the scene description knows.
 
 Convention: mu = (propagation direction in) . (propagation direction out), so mu = 1 goes straight on and g > 0, the
-mean of mu, scatters forward. Densities are per steradian and integrate to 1 over the sphere: 2 pi int_-1^1 f(mu) dmu = 1.
+mean of mu, scatters forward. Densities are per steradian, normalised to 2 pi int_-1^1 f(mu) dmu = 1.
 """
 
 from __future__ import annotations
