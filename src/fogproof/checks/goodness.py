@@ -81,7 +81,7 @@ def kolmogorov(
     critical = math.sqrt(math.log(2 / alpha) / (2 * n))
     resolution = Resolution(
         f"Kolmogorov distance in {label}",
-        critical + math.sqrt(math.log(1 / MISS) / (2 * n)) + float(np.max(mass, initial=0)) + float(mass_error.sum()),
+        critical + math.sqrt(math.log(1 / MISS) / (2 * n)) + gap + float(mass_error.sum()),
         MISS,
     )
     where = int(np.argmax(difference))
