@@ -21,8 +21,8 @@ class AnalogFog:
     ambient     L_i [W/(m^2 sr)]
     background  [W/(m^2 sr)]
 
-    A path that collides sees (sigma_s L_i + sigma_a L_e) / sigma_t: T / p(t) is 1 / sigma_t there. One that reaches the surface sees
-    the background: T / P(z) is 1.
+    A path that collides sees (sigma_s L_i + sigma_a L_e) / sigma_t: T / p(t) is 1 / sigma_t there. One that reaches the surface
+    sees the background: T / P(z) is 1.
     """
 
     medium: Medium

@@ -28,8 +28,9 @@ def _density(g: float, away: np.ndarray) -> np.ndarray:
 class HenyeyGreensteinDirections:
     """Directions about `axis`, the propagation direction before scattering.
 
-    The textbook inverse divides by 2 g and is singular at g = 0. With D = 1 - g + 2 g xi it is equivalent to
-    1 - mu = 2 (1 - g)^2 (1 - xi) (1 + g xi) / D^2 and 1 + mu = 2 (1 + g)^2 xi (1 - g (1 - xi)) / D^2, all factors positive.
+    The textbook inverse divides by 2 g and is singular at g = 0. With k = |g| and D = 1 - k + 2 k xi it is equivalent to
+    1 - mu = 2 (1 - k)^2 (1 - xi) (1 + k xi) / D^2 and 1 + mu = 2 (1 + k)^2 xi (1 - k + k xi) / D^2, sums of positive terms only.
+    For g < 0 the same law is mirrored.
     """
 
     g: float
@@ -39,11 +40,13 @@ class HenyeyGreensteinDirections:
 
     def sample(self, u: np.ndarray) -> Draw:
         """Map uniforms (n, 2) to directions (n, 3) and their pdf [1/sr]."""
-        g, xi = self.g, u[:, 0]
-        d2 = (1 - g + 2 * g * xi) ** 2
-        versine = 2 * (1 - g) ** 2 * (1 - xi) * (1 + g * xi) / d2
-        coversine = 2 * (1 + g) ** 2 * xi * (1 - g * (1 - xi)) / d2
-        return Draw(directions(self.axis, versine, coversine, u[:, 1]), _density(g, versine if g >= 0 else coversine))
+        k = abs(self.g)
+        xi = u[:, 0] if self.g >= 0 else 1 - u[:, 0]
+        d2 = ((1 - k) + 2 * k * xi) ** 2
+        from_peak = 2 * (1 - k) ** 2 * (1 - xi) * (1 + k * xi) / d2
+        from_antipode = 2 * (1 + k) ** 2 * xi * ((1 - k) + k * xi) / d2
+        versine, coversine = (from_peak, from_antipode) if self.g >= 0 else (from_antipode, from_peak)
+        return Draw(directions(self.axis, versine, coversine, u[:, 1]), _density(self.g, from_peak))
 
     def pdf(self, x: np.ndarray) -> np.ndarray:
         """Return the density of directions x (n, 3) [1/sr], from the chord to the peak: 2 (1 - mu) = |x - axis|^2."""

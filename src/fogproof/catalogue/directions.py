@@ -20,10 +20,17 @@ TILTED: Axis = (2 / 7, -3 / 7, 6 / 7)
 
 
 def oracle_pdf(phase: PhaseFunction, axis: Axis) -> Callable[[np.ndarray], Reference]:
-    """Return x (n, 3) -> the oracle's density of directions about `axis` [1/sr]."""
+    """Return x (n, 3) -> the oracle's density of directions about `axis` [1/sr].
+
+    A direction in floating point fixes its cosine only to a few roundings: what that changes is part of the error.
+    """
+    rounding = 2e-15
 
     def reference(x: np.ndarray) -> Reference:
-        return phase_pdf(phase, np.clip(x @ np.asarray(axis), -1, 1))
+        mu = x @ np.asarray(axis)
+        below, at, above = (phase_pdf(phase, np.clip(mu + shift, -1, 1)) for shift in (-rounding, 0, rounding))
+        spread = np.maximum(np.abs(below.value - at.value), np.abs(above.value - at.value))
+        return Reference(at.value, at.error + spread, at.method, at.source)
 
     return reference
 

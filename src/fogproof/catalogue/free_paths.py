@@ -78,7 +78,7 @@ def _density_at_surface(sampler: HomogeneousFreePath, u: np.ndarray) -> Draw:
 
 def _leaky_surface(sampler: HomogeneousFreePath, u: np.ndarray) -> np.ndarray:
     t = sampler.sample(u).x
-    stopped = (t == sampler.surface) & (u[:, 0] > 1 - 0.02 * np.exp(-sampler.sigma_t * sampler.surface))
+    stopped = (t == sampler.surface) & (u[:, 0] > 1 - 0.05 * np.exp(-sampler.sigma_t * sampler.surface))
     return np.where(stopped, 0.5 * sampler.surface, t)
 
 
@@ -117,10 +117,10 @@ def cases() -> list[SamplerCase]:
         ),
         _case(
             "surface/far",
-            "Free path before a surface at tau = 5",
-            1.0,
+            "Free path before a surface at tau = 2",
+            0.4,
             5.0,
-            "2 % of the surface events are moved",
+            "5 % of the surface events are moved",
             _leaky_surface,
         ),
         _case(

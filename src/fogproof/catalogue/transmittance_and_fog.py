@@ -36,6 +36,7 @@ def _fog_case(
     background: float,
     error: str,
     twin: Callable[[], Any],
+    **more: Any,
 ) -> EstimatorCase:
     return EstimatorCase(
         name=f"fog/analog/{name}",
@@ -45,6 +46,7 @@ def _fog_case(
         oracle="ambient_fog",
         source="volume rendering equation with constant in-scattered radiance",
         twin=Twin(error, twin),
+        **more,
     )
 
 
@@ -91,7 +93,7 @@ def cases() -> list[EstimatorCase]:
             0.8,
             1.5,
             "the weights of the lerp are exchanged",
-            lambda: _swapped(AnalogFog(haze, 7.0, 0.8, 1.5)),
+            lambda: _swapped(AnalogFog(haze, 4.0, 0.8, 1.5)),
         ),
         _fog_case(
             "glowing",
@@ -112,6 +114,7 @@ def cases() -> list[EstimatorCase]:
             9.0,
             "the albedo is forgotten",
             lambda: AnalogFog(Medium(0.0, 0.8), np.inf, 1.0, 9.0),
+            options={"variance": 0.0},
         ),
         _fog_case(
             "furnace",
@@ -122,5 +125,6 @@ def cases() -> list[EstimatorCase]:
             1.0,
             "a tenth of the scattering is lost",
             lambda: AnalogFog(Medium(0.07, 0.63), 2.0, 1.0, 1.0),
+            options={"variance": 0.0},
         ),
     ]

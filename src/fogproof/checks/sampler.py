@@ -18,10 +18,12 @@ import numpy as np
 from fogproof.checks.cells import Cells, cells_by_quadrature, masses_from_cdf, pilot_edges, unit_square_cells
 from fogproof.checks.charts import Chart, chart_of
 from fogproof.checks.contract import (
+    BUDGET,
     Watch,
     cdf_agreement,
     edge_uniforms,
     integral,
+    integral_slack,
     normalisation,
     reference_agreement,
 )
@@ -35,8 +37,6 @@ from fogproof.errors import InvalidValueError
 from fogproof.validate import number
 
 _PILOT = 1 << 14  # samples that set the edges of cells; they are not counted in them
-_BUDGET = 1_500_000  # evaluations of the pdf for the masses of all cells
-_TOLERANCE: dict[Precision, float] = {"float64": 1e-8, "float32": 1e-6}  # wanted error of the integral of the pdf
 _MOST_DIMENSIONS_AT_EDGES = 4  # 4^dimensions combinations of edge uniforms are tried
 
 
@@ -186,7 +186,8 @@ def _continuous(
         return subject.density(chart.to_point(c)) * chart.jacobian(c)
 
     with np.errstate(all="ignore"):  # an infinite or undefined density is found, not warned of
-        cells = cells_by_quadrature(chart_density, edges, chart.labels, _TOLERANCE[subject.precision], _BUDGET)
+        tolerance = 0.05 * integral_slack(subject, pilot)
+        cells = cells_by_quadrature(chart_density, edges, chart.labels, tolerance, BUDGET)
     findings = [normalisation(subject, cells, pilot)]
     coordinates = chart.from_point
     if subject.cdf is not None and len(edges) == 1:
