@@ -67,7 +67,7 @@ def plan(scene: Scene) -> Plan:
             terms,
             "single_scattering",
             "EquiangularAirlight",
-            "the airlight integral has no elementary form but converges geometrically after t = h sinh s; equiangular sampling cancels"
+            "the airlight integral has no elementary form but converges fast after t = h sinh s; equiangular sampling cancels"
             " the light's 1/r^2",
         )
     if emits or ambient:

@@ -25,7 +25,7 @@ def command(request: str) -> int:
     bad = False
     for text in _requests(request):
         reply = jsonable(answer_text(text))
-        bad = bad or "error" in reply and "value" not in reply
+        bad = bad or ("error" in reply and "value" not in reply)
         click.echo(json.dumps(reply))
     return 2 if bad else 0
 
