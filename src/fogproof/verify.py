@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import datetime
 import difflib
 import fnmatch
 import importlib.metadata
@@ -110,7 +109,9 @@ def exit_code(results: Iterable[Result]) -> int:
     return 3 if "inconclusive" in statuses else 0
 
 
-def record(results: Iterable[Result], *, seed: int, alpha: float, command: str, seconds: float) -> dict[str, Any]:
+def record(
+    results: Iterable[Result], *, seed: int, alpha: float, command: str, started: str, seconds: float
+) -> dict[str, Any]:
     """Return the JSON-ready record of a run, cases in the order of the catalogue."""
     order = {case.name: i for i, case in enumerate(all_cases())}
     ordered = sorted(results, key=lambda result: order[result.case.name])
@@ -123,7 +124,7 @@ def record(results: Iterable[Result], *, seed: int, alpha: float, command: str, 
             "command": command,
             "seed": seed,
             "alpha": alpha,
-            "finished": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
+            "started": started,
             "seconds": seconds,
             "exit_code": exit_code(ordered),
             "cases": [_case_record(result, seed) for result in ordered],

@@ -6,6 +6,7 @@ Mitsuba's `wi` points back along the ray, its `wo` forward, and g > 0 scatters f
 from __future__ import annotations
 
 import importlib.util
+import threading
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, ClassVar
@@ -17,6 +18,7 @@ from fogproof.domains import UnitSphere
 from fogproof.errors import NotInstalledError
 
 VARIANT = "scalar_rgb"
+_LOADING = threading.Lock()
 
 
 def installed() -> bool:
@@ -24,14 +26,15 @@ def installed() -> bool:
     return importlib.util.find_spec("mitsuba") is not None
 
 
-@cache
 def load() -> Any:
     """Import Mitsuba and set the variant, or raise `NotInstalledError` with the line that installs it."""
     if not installed():
         raise NotInstalledError("Mitsuba 3", "mitsuba")
-    import mitsuba
+    with _LOADING:  # a second thread would meet a half-imported package
+        import mitsuba
 
-    mitsuba.set_variant(VARIANT)
+        if mitsuba.variant() != VARIANT:
+            mitsuba.set_variant(VARIANT)
     return mitsuba
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from collections.abc import Iterator
 
 import click
@@ -32,7 +33,7 @@ def command(request: str) -> int:
 
 def _requests(source: str) -> Iterator[str]:
     if source == "-":
-        yield from (line for line in click.get_text_stream("stdin") if line.strip())
+        yield from (line for line in sys.stdin if line.strip())
         return
     try:
         with open(source, encoding="utf-8") as file:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime
 import json
 import shlex
 import sys
@@ -51,7 +52,7 @@ def command(
 
         prepare_folder(folder)
     seed = fresh_seed() if seed is None else seed
-    started = time.perf_counter()
+    started, clock = datetime.datetime.now(datetime.UTC), time.perf_counter()
     results: list[Result] = []
     interrupted = False
     width = max(len(case.name) for case in chosen)
@@ -72,7 +73,8 @@ def command(
         seed=seed,
         alpha=alpha,
         command=shlex.join(["fogproof", *sys.argv[1:]]),
-        seconds=time.perf_counter() - started,
+        started=started.isoformat(timespec="seconds"),
+        seconds=time.perf_counter() - clock,
     )
     if as_json:
         click.echo(json.dumps(run_record))
