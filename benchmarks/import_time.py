@@ -1,6 +1,6 @@
 """How long `import fogproof` takes, as a ratio to `import numpy`, in interleaved fresh processes.
 
-    python benchmarks/import_time.py
+python benchmarks/import_time.py
 """
 
 from __future__ import annotations
