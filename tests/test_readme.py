@@ -17,7 +17,7 @@ EXAMPLES = re.findall(r"```python\n(.*?)```", README, re.S)
 
 
 def test_the_first_example_finds_the_sign():
-    with pytest.raises(RejectedError, match="mean cosine of the pdf is -0.8"):
+    with pytest.raises(RejectedError, match=r"mean cosine of the pdf is -0\.8"):
         exec(compile(EXAMPLES[0], "README.md", "exec"), {})
 
 
