@@ -5,13 +5,17 @@ exact binary64 numbers.
 """
 
 from fogproof.analytic.ambient_fog import ambient_fog
-from fogproof.analytic.phase_functions import phase_cdf, phase_pdf
+from fogproof.analytic.phase_functions import phase_cdf, phase_mean_cosine, phase_pdf, phase_quantile
+from fogproof.analytic.rayleigh_coefficient import rayleigh_scattering_coefficient
 from fogproof.analytic.transmittance import optical_thickness, transmittance
 
 __all__ = [
     "ambient_fog",
     "optical_thickness",
     "phase_cdf",
+    "phase_mean_cosine",
     "phase_pdf",
+    "phase_quantile",
+    "rayleigh_scattering_coefficient",
     "transmittance",
 ]
