@@ -1,0 +1,139 @@
+"""What a check says: findings, each with its p-value, effect and resolution, gathered into one verdict."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+
+from fogproof.errors import FogproofError
+
+Outcome = Literal["rejected", "not rejected", "inconclusive"]
+
+
+class RejectedError(FogproofError, AssertionError):
+    """A check rejected its subject; the message explains. It is an `AssertionError`, so test runners show a failure."""
+
+    code = "rejected"
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """The smallest error of a named kind that a check would have caught, missing it with probability <= `miss`."""
+
+    kind: str
+    value: float
+    miss: float = 0.01
+
+    def __str__(self) -> str:
+        sure = f" with probability {1 - self.miss:g}" if self.miss else ""
+        article = "an" if self.kind[0] in "aeiou" else "a"
+        return f"{article} {self.kind} above {self.value:.2g} would have been caught{sure}"
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One sub-check.
+
+    check       its name
+    outcome     rejected, not rejected or inconclusive
+    message     one sentence for people
+    p_value     None for a deterministic check
+    alpha       its share of the false-alarm probability
+    exact       True if the p-value is uniform for a right subject, False if it is an upper bound
+    statistic   the test statistic
+    effect      size of the misfit, in the unit of the resolution's kind
+    resolution  what this check could not have missed
+    figure      data for a plot, JSON-ready
+    """
+
+    check: str
+    outcome: Outcome
+    message: str
+    p_value: float | None = None
+    alpha: float | None = None
+    exact: bool = False
+    statistic: float | None = None
+    effect: float | None = None
+    resolution: Resolution | None = None
+    figure: dict[str, Any] | None = None
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """All findings about one subject, inside one false-alarm probability `alpha`."""
+
+    findings: tuple[Finding, ...]
+    alpha: float
+    samples: int
+    seed: int
+    seconds: float = 0.0
+    settings: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def outcome(self) -> Outcome:
+        """Rejected if any finding is; otherwise inconclusive if any is; otherwise not rejected."""
+        outcomes = {finding.outcome for finding in self.findings}
+        return (
+            "rejected" if "rejected" in outcomes else "inconclusive" if "inconclusive" in outcomes else "not rejected"
+        )
+
+    @property
+    def p_value(self) -> float | None:
+        """The smallest p-value of the statistical findings, not corrected for their number; None if there are none."""
+        return min((f.p_value for f in self.findings if f.p_value is not None), default=None)
+
+    @property
+    def resolution(self) -> Resolution | None:
+        """The resolution of the first finding that states one: the headline of a pass."""
+        return next((f.resolution for f in self.findings if f.resolution is not None and f.resolution.miss > 0), None)
+
+    def raise_if_rejected(self) -> None:
+        """Raise `RejectedError` with the whole explanation if the outcome is "rejected"."""
+        if self.outcome == "rejected":
+            raise RejectedError(str(self))
+
+    def __str__(self) -> str:
+        lines = [f"{self.outcome} (alpha {self.alpha:g}, {self.samples} samples, seed {self.seed})"]
+        order = {"rejected": 0, "inconclusive": 1, "not rejected": 2}
+        for finding in sorted(self.findings, key=lambda f: order[f.outcome]):
+            p = "" if finding.p_value is None else f" p = {finding.p_value:.3g}."
+            seen = f" {finding.resolution}." if finding.resolution and finding.outcome == "not rejected" else ""
+            lines.append(f"  {finding.outcome:12}  {finding.check}: {finding.message}.{p}{seen}")
+        return "\n".join(lines)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the JSON-ready form; numbers that JSON lacks become "inf", "-inf" or "nan"."""
+        return jsonable(
+            {
+                "outcome": self.outcome,
+                "p_value": self.p_value,
+                "alpha": self.alpha,
+                "samples": self.samples,
+                "seed": self.seed,
+                "seconds": self.seconds,
+                "settings": self.settings,
+                "resolution": self.resolution,
+                "findings": self.findings,
+            }
+        )
+
+
+def jsonable(value: Any) -> Any:
+    """Return `value` with dataclasses, arrays and non-finite numbers in JSON's terms."""
+    if isinstance(value, (bool, str, int)) or value is None:
+        return value
+    if isinstance(value, (float, np.floating)):
+        number = float(value)
+        return number if math.isfinite(number) else str(number)
+    if isinstance(value, np.generic | np.ndarray):
+        return jsonable(value.tolist())
+    if hasattr(value, "__dataclass_fields__"):
+        return {name: jsonable(getattr(value, name)) for name in value.__dataclass_fields__}
+    if isinstance(value, dict):
+        return {str(key): jsonable(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [jsonable(item) for item in value]
+    return repr(value)
