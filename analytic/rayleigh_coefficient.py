@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from fogproof.analytic.error_free import EPS
+from fogproof.analytic.error_free import EPS, TINY
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError
 from fogproof.validate import as_float_array, require
@@ -39,9 +39,11 @@ def rayleigh_scattering_coefficient(
     if not (denominator > 0).all():
         rule = "must not make eta^2 = -2, where the formula has a pole"
         raise InvalidValueError("refractive_index", rule, refractive_index, "use the full Lorenz-Mie solution")
-    value = rho * (2 * np.pi**5 / 3) * (d / lam) ** 4 * d**2 * (numerator / denominator) ** 2
+    with np.errstate(under="ignore"):
+        value = (2 * np.pi**5 / 3) * (d / lam) ** 4 * d**2 * (numerator / denominator) ** 2 * rho
     cancellation = (np.abs(eta) ** 2 + 2) / denominator
-    return Reference(value, EPS * value * (12 + 4 * cancellation), "closed form", "Bohren & Huffman 1983, eq. 5.8")
+    error = EPS * value * (12 + 4 * cancellation) + TINY * (1 + rho)
+    return Reference(np.asarray(value), np.asarray(error), "closed form", "Bohren & Huffman 1983, eq. 5.8")
 
 
 def _complex_array(name: str, value: Any) -> np.ndarray:
