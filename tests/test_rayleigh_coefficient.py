@@ -16,7 +16,7 @@ indices = st.one_of(
     st.floats(-15, 1).map(lambda e: 1 + 10.0**e),
     st.floats(0, 1),
     st.builds(complex, st.floats(0, 3), st.floats(0, 5)),
-    st.builds(complex, st.floats(0, 1e-6), st.just(2**0.5)),
+    st.builds(complex, st.floats(0, 1e-6), st.floats(2**0.5 - 1e-9, 2**0.5 + 1e-9)),
 )
 
 
@@ -29,8 +29,8 @@ def test_value_is_within_its_error(d, eta, rho, lam):
         factor = abs((square - 1) / (square + 2)) ** 2
         truth = mp.mpf(rho) * 2 * mp.pi**5 * mp.mpf(d) ** 6 / (3 * mp.mpf(lam) ** 4) * factor
         assert abs(mp.mpf(float(result.value)) - truth) <= mp.mpf(float(result.error))
-    if np.isreal(eta) and result.value > 1e-280:
-        assert result.error <= 17 * EPS * result.value
+    if result.value > 1e-280:
+        assert result.error <= 41 * EPS * result.value
 
 
 def test_the_sky_is_blue():
