@@ -4,14 +4,18 @@ Every function broadcasts over arrays and returns a `Reference` with |value - tr
 exact binary64 numbers.
 """
 
+from fogproof.analytic.airlight import airlight_integral
 from fogproof.analytic.ambient_fog import ambient_fog
+from fogproof.analytic.single_scattering import single_scattering
 from fogproof.analytic.phase_functions import phase_cdf, phase_mean_cosine, phase_pdf, phase_quantile
 from fogproof.analytic.rayleigh_coefficient import rayleigh_scattering_coefficient
 from fogproof.analytic.transmittance import optical_thickness, transmittance
 
 __all__ = [
+    "airlight_integral",
     "ambient_fog",
     "optical_thickness",
+    "single_scattering",
     "phase_cdf",
     "phase_mean_cosine",
     "phase_pdf",
