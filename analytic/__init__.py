@@ -13,7 +13,21 @@ from fogproof.analytic.transmittance import optical_thickness, transmittance
 
 __all__ = [
     "airlight_integral",
+from fogproof.analytic.coefficients import Coefficients, coefficients
+from fogproof.analytic.emission import emitted_radiance
+from fogproof.analytic.free_path import free_path
+from fogproof.analytic.furnace import thermal_furnace, white_furnace
+from fogproof.analytic.phase_functions import phase_cdf, phase_pdf
+from fogproof.analytic.radiance_by_ode import radiance_by_ode
+from fogproof.analytic.radiance_by_quadrature import radiance_by_quadrature
+from fogproof.analytic.transmittance import optical_thickness, transmittance
+
+__all__ = [
+    "Coefficients",
     "ambient_fog",
+    "coefficients",
+    "emitted_radiance",
+    "free_path",
     "optical_thickness",
     "single_scattering",
     "phase_cdf",
@@ -21,5 +35,9 @@ __all__ = [
     "phase_pdf",
     "phase_quantile",
     "rayleigh_scattering_coefficient",
+    "radiance_by_ode",
+    "radiance_by_quadrature",
+    "thermal_furnace",
     "transmittance",
+    "white_furnace",
 ]
