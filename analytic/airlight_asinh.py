@@ -195,12 +195,12 @@ def _sums(
             parts[1, block] = WEIGHTS @ f
         if gain is not None:
             f *= gain.factor(w, wt, own)
-        if phase.noisy:
-            factor, noise = phase.factor(w, wt)
-            parts[2, block] = WEIGHTS @ (f * noise)
+        if phase.factor is not None:
+            factor = phase.factor(w, wt)
+            if phase.noisy:
+                factor, noise = factor
+                parts[2, block] = WEIGHTS @ (f * noise)
             f *= factor
-        elif phase.factor is not None:
-            f *= phase.factor(w, wt)
         parts[0, block] = WEIGHTS @ f
     if total > len(k):
         parts = np.add.reduceat(parts, first, axis=1)
