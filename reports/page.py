@@ -21,7 +21,7 @@ from fogproof.reports.text import anchor, file_stem, label, visible
 if TYPE_CHECKING:
     import jinja2
 
-INLINE_BYTES = 8_000_000
+INLINE_BYTES = 5_000_000
 """Figures stand inside the page, the worst cases' first, up to this many bytes; further ones are linked."""
 
 STATUSES: tuple[Status, ...] = get_args(Status)
