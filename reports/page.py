@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from math import inf
 from pathlib import Path
 from typing import Any, get_args
 
@@ -103,13 +104,18 @@ def _tone(run: Run) -> str:
 def _overview(run: Run) -> Iterable[tuple[str, Any, tuple[float, float]]]:
     """Yield the figures of the whole run: only subjects that ought to be right have uniform p-values."""
     right = [case.verdict for case in run.cases if case.verdict and case.expected == "not rejected"]
-    exact = tuple(f.p_value for v in right for f in v.findings if f.exact and f.p_value is not None)
+    exact = tuple(
+        f.p_value for v in right for f in v.findings if f.exact and f.p_value is not None and 0 <= f.p_value <= 1
+    )
     if exact:
         yield "p-values", PValues(exact), (5.6, 4.2)
     passes = tuple(
         (case.name, case.verdict.resolution.kind, case.verdict.resolution.value)
         for case in run.cases
-        if case.status == "passed" and case.verdict and case.verdict.resolution and case.verdict.resolution.value > 0
+        if case.status == "passed"
+        and case.verdict
+        and case.verdict.resolution
+        and 0 < case.verdict.resolution.value < inf
     )
     if passes:
         drawing = Resolutions(passes)

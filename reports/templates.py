@@ -13,18 +13,9 @@ from fogproof.reports.text import anchor, label, visible
 if TYPE_CHECKING:
     import jinja2
 
-_MARKS = {
-    **{
-        "surprise": "!",
-        "rejected": "✗",
-        "error": "⚠",
-        "inconclusive": "?",
-        "known": "⚑",
-        "skipped": "–",
-        "passed": "✓",
-    },
-    **{"worse": "✗", "mended": "✓", "changed": "≠", "new": "+", "gone": "–", "same": "="},
-}
+_STATUSES = {"surprise": "!", "rejected": "✗", "error": "⚠", "inconclusive": "?", "known": "⚑", "skipped": "–"}
+_CHANGES = {"worse": "✗", "mended": "✓", "changed": "≠", "new": "+", "gone": "–", "same": "="}
+_MARKS = _STATUSES | {"passed": "✓"} | _CHANGES
 
 
 def fill(template: str, **values: Any) -> str:

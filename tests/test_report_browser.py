@@ -11,7 +11,7 @@ from importlib import resources
 import pytest
 from report_records import HOSTILE, case, record, typical
 
-from fogproof.reports import write_report
+from fogproof.reports import write_comparison, write_report
 
 webdriver = pytest.importorskip("selenium.webdriver", reason="selenium is not installed: pip install --group test")
 CHROMIUM, DRIVER = (shutil.which(name) for name in ("chromium", "chromedriver"))
@@ -53,7 +53,9 @@ def pages(tmp_path_factory):
         for text, status in zip(HOSTILE.values(), ["rejected", "passed", "error", "skipped"] * 5, strict=False)
     ]
     records = {"typical": typical(4), "hostile": record(cases, command=HOSTILE["script"])}
-    return {name: write_report(one, tmp_path_factory.mktemp(name)).as_uri() for name, one in records.items()}
+    written = {name: write_report(one, tmp_path_factory.mktemp(name)).as_uri() for name, one in records.items()}
+    both = write_comparison(records["typical"], records["hostile"], tmp_path_factory.mktemp("comparison"))
+    return written | {"comparison": both.as_uri()}
 
 
 def visit(browser, address):
@@ -72,7 +74,7 @@ def names_shown(browser):
     return [row.text for row in browser.find_elements(By.CSS_SELECTOR, "tbody th") if row.is_displayed()]
 
 
-@pytest.mark.parametrize("name", ["typical", "hostile"])
+@pytest.mark.parametrize("name", ["typical", "hostile", "comparison"])
 def test_no_error_and_no_request(browser, pages, name):
     visit(browser, pages[name])
     browser.execute_script("document.querySelectorAll('details').forEach(it => it.open = true)")
@@ -117,6 +119,15 @@ def test_filter_by_status_and_by_word(browser, pages):
     assert names_shown(browser) == ["lecture/surprise"]
 
 
+def test_filter_of_a_comparison(browser, pages):
+    visit(browser, pages["comparison"])
+    browser.find_element(By.CSS_SELECTOR, "input[value=gone]").click()
+    assert len(names_shown(browser)) == 11 + len(browser.find_elements(By.CSS_SELECTOR, "table.plain tbody th"))
+    browser.find_element(By.NAME, "words").send_keys("ratio")
+    assert names_shown(browser)[0] == "transmittance/ratio tracking"
+    assert browser.find_element(By.TAG_NAME, "output").text == f"1 of {11 + len(HOSTILE)} shown"
+
+
 def in_view(browser, element):
     top = browser.execute_script("return arguments[0].getBoundingClientRect().top", element)
     return 0 <= top < browser.execute_script("return innerHeight")
@@ -157,7 +168,7 @@ def test_every_hostile_name_has_a_working_link(browser, pages):
         assert after - before <= {target}
 
 
-@pytest.mark.parametrize("name", ["typical", "hostile"])
+@pytest.mark.parametrize("name", ["typical", "hostile", "comparison"])
 @pytest.mark.parametrize("width", [320, 400, 800])
 def test_nothing_sticks_out_sideways(browser, pages, name, width):
     screen = {"width": width, "height": 800, "deviceScaleFactor": 1, "mobile": False}
@@ -172,7 +183,7 @@ def test_nothing_sticks_out_sideways(browser, pages, name, width):
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize("name", ["typical", "hostile"])
+@pytest.mark.parametrize("name", ["typical", "hostile", "comparison"])
 def test_no_serious_barrier(browser, pages, name, scheme):
     """axe-core's findings of impact serious or critical, every section open."""
     feature = {"features": [{"name": "prefers-color-scheme", "value": scheme}]}
