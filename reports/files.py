@@ -8,6 +8,13 @@ from pathlib import Path
 from fogproof.errors import InvalidInputError
 
 
+def prepare_folder(folder: Path) -> None:
+    """Make `folder` and see that it can be written: better to learn that before a run than after it."""
+    probe = folder / f".probe.{os.getpid()}"
+    write_file(probe, b"")
+    probe.unlink(missing_ok=True)
+
+
 def write_file(path: Path, content: str | bytes) -> Path:
     """Put `content` at `path` whole or not at all, making folders on the way; a fault is an `InvalidInputError`."""
     data = content if isinstance(content, bytes) else content.encode("utf-8")

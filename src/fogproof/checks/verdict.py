@@ -29,7 +29,8 @@ class Resolution:
 
     def __str__(self) -> str:
         sure = f" with probability {1 - self.miss:g}" if self.miss else ""
-        return f"a {self.kind} above {self.value:.2g} would have been caught{sure}"
+        article = "an" if self.kind[0] in "aeiou" else "a"
+        return f"{article} {self.kind} above {self.value:.2g} would have been caught{sure}"
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ import numpy as np
 
 from fogproof.errors import InvalidValueError
 from fogproof.scene.phase_functions import HenyeyGreenstein, Isotropic, PhaseFunction, PhaseFunctionField, Rayleigh
-from fogproof.validate import Channels, channel_count, nonnegative_channels
+from fogproof.validate import Channels, channel_count, nonnegative_channels, require
 
 
 @dataclass(frozen=True)
@@ -38,6 +38,8 @@ class Medium:
                 f"one of {Isotropic()}, {HenyeyGreenstein(0.5)}, {Rayleigh()}",
             )
         channel_count(sigma_a=self.sigma_a, sigma_s=self.sigma_s, emission=self.emission)
+        with np.errstate(over="ignore"):
+            require("sigma_t", self.sigma_t, np.isfinite(self.sigma_t), "= sigma_a + sigma_s must be finite [1/m]")
 
     @property
     def sigma_t(self) -> np.ndarray:

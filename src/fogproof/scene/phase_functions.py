@@ -1,7 +1,7 @@
 """Which phase function a medium has: parameters only. The oracle and the estimators each bring their own formulas.
 
-Convention: mu is the *forward* cosine, (propagation direction in) . (propagation direction out); g is the mean of mu and
-g > 0 scatters forward.
+Convention: mu is the *forward* cosine, (propagation direction in) . (propagation direction out); g is the mean of mu
+and g > 0 scatters forward.
 """
 
 from __future__ import annotations

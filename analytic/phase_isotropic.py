@@ -1,0 +1,22 @@
+"""Isotropic scattering: 1/(4 pi) in every direction."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fogproof.scene.phase_functions import Isotropic
+
+SOURCE = "uniform distribution on the sphere"
+EPS = np.finfo(np.float64).eps
+
+
+def pdf(_phase: Isotropic, mu: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return f(mu) = 1/(4 pi) [1/sr]; relative error eps."""
+    value = np.full_like(mu, 1 / (4 * np.pi))
+    return value, EPS * value
+
+
+def cdf(_phase: Isotropic, mu: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return F(mu) = (1 + mu)/2; relative error eps/2."""
+    value = (1 + mu) / 2
+    return value, EPS / 2 * value

@@ -1,0 +1,30 @@
+"""Random streams: every batch of every check has a generator of its own, named by what it is for.
+
+No two cases, stages or batches share uniforms, and a batch can be drawn again alone.
+"""
+
+from __future__ import annotations
+
+import hashlib
+
+import numpy as np
+
+BATCH = 1 << 16
+"""Samples a batch: part of a check's definition, so that results do not depend on workers or memory."""
+
+
+def fresh_seed() -> int:
+    """Return a 64-bit seed from the operating system."""
+    return int(np.random.SeedSequence().generate_state(1, np.uint64)[0])
+
+
+def batch_generator(seed: int, name: str, stage: int, index: int) -> np.random.Generator:
+    """Return the generator of batch `index` in `stage` of the case `name`."""
+    words = np.frombuffer(hashlib.blake2b(name.encode(), digest_size=16).digest(), dtype=np.uint32)
+    return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(*map(int, words), stage, index)))
+
+
+def batch_sizes(samples: int) -> list[int]:
+    """Return the sizes of the batches that make up `samples`."""
+    full, rest = divmod(samples, BATCH)
+    return [BATCH] * full + ([rest] if rest else [])
