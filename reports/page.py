@@ -87,7 +87,8 @@ def headline(run: Run) -> tuple[str, str]:
             f"Nothing was judged: {'the one case' if len(run.cases) == 1 else f'all {len(run.cases)} cases'} skipped"
         )
     else:
-        first = f"{'The one case' if judged == 1 else f'All {judged} cases'} judged came out as expected"
+        who = "The one case" if judged == 1 else f"All {judged} cases"
+        first = f"{who}{' judged' if judged < len(run.cases) else ''} came out as expected"
     words = {"surprise": "not as declared", "error": "failed to run", "known": "rejected as declared"}
     words["passed"] = "not rejected"
     counts = [f"{count[status]} {words.get(status, status)}" for status in STATUSES if count[status]]

@@ -73,7 +73,7 @@ def test_hostile_names_are_shown(tmp_path):
     page = Page(write_comparison(one, one | {"command": HOSTILE["script"]}, tmp_path))
     assert len(page.all("script")) == 1
     for text in HOSTILE.values():
-        assert " ".join(visible(text).split())[:80] in " ".join(page.words.split())
+        assert " ".join(visible(text).split())[:40] in " ".join(page.words.split())
 
 
 def test_faulty_record_is_named_and_nothing_written(tmp_path):

@@ -133,7 +133,7 @@ def test_hostile_files_are_well_formed(hostile_page):
     ("statuses", "words"),
     [
         ([], "No case was run"),
-        (["passed"], "The one case judged came out as expected"),
+        (["passed"], "The one case came out as expected"),
         (["passed", "known", "skipped"], "All 2 cases judged came out as expected"),
         (["skipped", "skipped"], "Nothing was judged: all 2 cases skipped"),
         (["inconclusive", "passed"], "Nothing was rejected, but 1 of 2 cases is inconclusive"),
