@@ -120,7 +120,7 @@ WRONG = {
     "stuck": ("interval", {"sample": lambda u: np.full(len(u), 3.0)}, "distribution"),
     "a loaded die": ("die", {"sample": lambda u: np.floor(6 * u[:, 0] ** 1.1)}, "distribution"),
     "infinite at u = 0": ("exponential", {"sample": lambda u: 1 - np.log(u[:, 0]) / 3}, "edge uniforms"),
-    "atom too heavy": ("atom at infinity", {"atoms": {np.inf: 0.26}}, "atom"),
+    "atom too heavy": ("atom at infinity", {"atoms": {np.inf: 0.3}}, "atom"),
     "undeclared atom": ("atom at infinity", {"atoms": {}}, "domain"),
     "returned pdf": ("interval", {"sample": lambda u: _draw(2 + 3 * u[:, 0], pdf=np.full(len(u), 0.3334))}, "returned pdf"),
     "weight": ("weights", {"sample": lambda u: _draw(u[:, 0], weight=0.601 * u[:, 0])}, "weight"),
