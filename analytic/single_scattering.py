@@ -11,22 +11,24 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fogproof.analytic.airlight import METHOD, SOURCE, Segments, integrate
-from fogproof.analytic.airlight_phase import AirlightPhase, airlight_phase
+from fogproof.analytic.airlight import Method, integrate
+from fogproof.analytic.airlight_phase import airlight_phase
+from fogproof.analytic.airlight_segments import Segments
 from fogproof.analytic.error_free import EPS, TINY, two_sum
 from fogproof.analytic.vectors import cross, dot, norm
 from fogproof.contracts import Reference
 from fogproof.errors import UnsupportedError
-from fogproof.scene import Medium, PointLight, Ray
+from fogproof.scene import Isotropic, Medium, PhaseFunction, PointLight, Ray
 from fogproof.validate import channel_count
 
 
-def single_scattering(medium: Medium, ray: Ray, light: PointLight) -> Reference:
+def single_scattering(medium: Medium, ray: Ray, light: PointLight, method: Method = "asinh") -> Reference:
     """Return the single-scattered radiance (airlight) along camera rays [W/(m^2 sr)].
 
     medium  homogeneous; it reaches at least as far as the ray and the light
     ray     rays of shape R; nothing stands between their points and the light
     light   a point light
+    method  how the airlight integral is computed, see `airlight_integral`
 
     The result has shape R, or R + (C,) if medium or light have C channels. A light on the ray gives inf, a medium that
     does not scatter 0. `error` counts rounding, and half a unit in the last place of each coordinate of the origin,
@@ -41,13 +43,14 @@ def single_scattering(medium: Medium, ray: Ray, light: PointLight) -> Reference:
     sigma, sigma_low = two_sum(medium.sigma_a, medium.sigma_s)
     with np.errstate(all="ignore"):
         geometry = place(ray, np.array(light.position))
-        phase = airlight_phase(medium.phase)
-        integral, error = _integrals(geometry, np.atleast_1d(sigma), np.atleast_1d(sigma_low), phase)
+        integral, error, name, source = _integrals(
+            geometry, np.atleast_1d(sigma), np.atleast_1d(sigma_low), medium.phase, method
+        )
         scale = np.atleast_1d(np.multiply(medium.sigma_s, light.intensity)) / (4 * np.pi)
         value = np.where(scale > 0, integral * scale, 0.0)
         error = np.where((scale > 0) & (value < np.inf), error * scale + 3 * EPS * value + TINY, 0.0)
     shape = ray.shape if channels is None else (*ray.shape, channels)
-    return Reference(value.reshape(shape), error.reshape(shape), METHOD, SOURCE)
+    return Reference(value.reshape(shape), error.reshape(shape), name, source)
 
 
 class Geometry(NamedTuple):
@@ -86,19 +89,22 @@ def place(ray: Ray, position: np.ndarray) -> Geometry:
 
 
 def _integrals(
-    where: Geometry, sigma: np.ndarray, sigma_low: np.ndarray, phase: AirlightPhase
-) -> tuple[np.ndarray, np.ndarray]:
+    where: Geometry, sigma: np.ndarray, sigma_low: np.ndarray, phase: PhaseFunction, method: Method
+) -> tuple[np.ndarray, np.ndarray, str, str]:
     """Return the airlight integrals (n, channels) and their error, what the coordinates are worth included."""
     h, h_low, a, a_low, b, length, uncertainty = (x[:, None] for x in where)
-    fields = np.broadcast_arrays(sigma, h, a, b, length, sigma_low, h_low, a_low)
-    value, error = integrate(Segments(*(x.ravel() for x in fields)), phase)
+    fields = np.broadcast_arrays(sigma, sigma_low, h, h_low, a, a_low, a, b, length)
+    value, error, name, source = integrate(Segments(*(x.ravel() for x in fields)), phase, method)
     value, error = value.reshape(fields[0].shape), error.reshape(fields[0].shape)
 
     # Move the light by d: path lengths change by d at most, 1/r^2 by (1 - d/r)^-2, angles by d/r.
     start, end = np.hypot(a, h), np.hypot(b, h)
     nearest = np.where(a > 0, start, np.where(b < 0, end, h))
     turn = uncertainty / nearest
-    bend = phase.slope(np.where(b < np.inf, -b / end, -1.0), -a / start) * turn
+    bend, steep = (x * turn for x in airlight_phase(phase).slope(np.where(b < np.inf, -b / end, -1.0), -a / start))
     relative = np.expm1(2 * sigma * uncertainty - 2 * np.log1p(-turn) + bend / (1 - bend))
     relative = np.where((turn < 1) & (bend < 1), relative, np.inf)
-    return value, np.where(np.isfinite(value), error + value * relative, 0.0)
+    plain = (
+        integrate(Segments(*(x.ravel() for x in fields)), Isotropic())[0].reshape(value.shape) if steep.any() else 0.0
+    )
+    return value, np.where(np.isfinite(value), error + value * relative + plain * steep, 0.0), name, source
