@@ -11,11 +11,12 @@ from typing import Any
 
 from fogproof.reports.comparison import write_comparison_page
 from fogproof.reports.files import prepare_folder
+from fogproof.reports.gallery import write_gallery
 from fogproof.reports.junit import write_junit
 from fogproof.reports.page import write_page
 from fogproof.reports.records import SCHEMA, parse_record, read_record, write_csv, write_record
 
-__all__ = ["SCHEMA", "prepare_folder", "read_record", "write_comparison", "write_report"]
+__all__ = ["SCHEMA", "prepare_folder", "read_record", "write_comparison", "write_gallery", "write_report"]
 
 
 def write_report(record: dict[str, Any], folder: str | Path) -> Path:

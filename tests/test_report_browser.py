@@ -11,7 +11,7 @@ from importlib import resources
 import pytest
 from report_records import HOSTILE, case, record, typical
 
-from fogproof.reports import write_comparison, write_report
+from fogproof.reports import write_comparison, write_gallery, write_report
 
 webdriver = pytest.importorskip("selenium.webdriver", reason="selenium is not installed: pip install --group test")
 CHROMIUM, DRIVER = (shutil.which(name) for name in ("chromium", "chromedriver"))
@@ -55,7 +55,8 @@ def pages(tmp_path_factory):
     records = {"typical": typical(4), "hostile": record(cases, command=HOSTILE["script"])}
     written = {name: write_report(one, tmp_path_factory.mktemp(name)).as_uri() for name, one in records.items()}
     both = write_comparison(records["typical"], records["hostile"], tmp_path_factory.mktemp("comparison"))
-    return written | {"comparison": both.as_uri()}
+    gallery = write_gallery(tmp_path_factory.mktemp("gallery"))
+    return written | {"comparison": both.as_uri(), "gallery": gallery.as_uri()}
 
 
 def visit(browser, address):
@@ -74,7 +75,7 @@ def names_shown(browser):
     return [row.text for row in browser.find_elements(By.CSS_SELECTOR, "tbody th") if row.is_displayed()]
 
 
-@pytest.mark.parametrize("name", ["typical", "hostile", "comparison"])
+@pytest.mark.parametrize("name", ["typical", "hostile", "comparison", "gallery"])
 def test_no_error_and_no_request(browser, pages, name):
     visit(browser, pages[name])
     browser.execute_script("document.querySelectorAll('details').forEach(it => it.open = true)")
@@ -168,7 +169,7 @@ def test_every_hostile_name_has_a_working_link(browser, pages):
         assert after - before <= {target}
 
 
-@pytest.mark.parametrize("name", ["typical", "hostile", "comparison"])
+@pytest.mark.parametrize("name", ["typical", "hostile", "comparison", "gallery"])
 @pytest.mark.parametrize("width", [320, 400, 800])
 def test_nothing_sticks_out_sideways(browser, pages, name, width):
     screen = {"width": width, "height": 800, "deviceScaleFactor": 1, "mobile": False}
@@ -183,7 +184,7 @@ def test_nothing_sticks_out_sideways(browser, pages, name, width):
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize("name", ["typical", "hostile", "comparison"])
+@pytest.mark.parametrize("name", ["typical", "hostile", "comparison", "gallery"])
 def test_no_serious_barrier(browser, pages, name, scheme):
     """axe-core's findings of impact serious or critical, every section open."""
     feature = {"features": [{"name": "prefers-color-scheme", "value": scheme}]}

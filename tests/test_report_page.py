@@ -236,6 +236,7 @@ def test_figure_colours_follow_the_page_and_not_the_text():
 def test_large_report_stays_small(tmp_path, monkeypatch):
     drawn = render(parse_figure(jsonable(z_figure(np.random.default_rng(1)))), "shared")
     monkeypatch.setattr(page_module, "render", lambda drawing, stem, *size, **png: drawn)
+    monkeypatch.setattr(type(drawn), "save", lambda picture, folder: None)
     rng = np.random.default_rng(1)
     shared = verdict(rng, "sampler", "rejected").to_dict()
     cases = [case(f"case/{i}", "skipped") | {"status": "rejected", "verdict": shared} for i in range(500)]
