@@ -13,6 +13,7 @@ from fogproof.analytic.phase_functions import phase_cdf, phase_pdf
 from fogproof.analytic.radiance_by_ode import radiance_by_ode
 from fogproof.analytic.radiance_by_quadrature import radiance_by_quadrature
 from fogproof.analytic.transmittance import optical_thickness, transmittance
+from fogproof.analytic.varying_phase import phase_pdf_at
 
 __all__ = [
     "Coefficients",
@@ -23,6 +24,7 @@ __all__ = [
     "optical_thickness",
     "phase_cdf",
     "phase_pdf",
+    "phase_pdf_at",
     "radiance_by_ode",
     "radiance_by_quadrature",
     "thermal_furnace",
