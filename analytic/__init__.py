@@ -4,29 +4,38 @@ Every function broadcasts over arrays and returns a `Reference` with |value - tr
 exact binary64 numbers.
 """
 
+from fogproof.analytic.airlight import airlight_integral, airlight_table
 from fogproof.analytic.ambient_fog import ambient_fog
 from fogproof.analytic.coefficients import Coefficients, coefficients
 from fogproof.analytic.emission import emitted_radiance
 from fogproof.analytic.free_path import free_path
 from fogproof.analytic.furnace import thermal_furnace, white_furnace
-from fogproof.analytic.phase_functions import phase_cdf, phase_pdf
+from fogproof.analytic.phase_functions import phase_cdf, phase_mean_cosine, phase_pdf, phase_quantile
 from fogproof.analytic.radiance_by_ode import radiance_by_ode
 from fogproof.analytic.radiance_by_quadrature import radiance_by_quadrature
+from fogproof.analytic.rayleigh_coefficient import rayleigh_scattering_coefficient
+from fogproof.analytic.single_scattering import single_scattering
 from fogproof.analytic.transmittance import optical_thickness, transmittance
 from fogproof.analytic.varying_phase import phase_pdf_at
 
 __all__ = [
     "Coefficients",
+    "airlight_integral",
+    "airlight_table",
     "ambient_fog",
     "coefficients",
     "emitted_radiance",
     "free_path",
     "optical_thickness",
     "phase_cdf",
+    "phase_mean_cosine",
     "phase_pdf",
     "phase_pdf_at",
+    "phase_quantile",
     "radiance_by_ode",
     "radiance_by_quadrature",
+    "rayleigh_scattering_coefficient",
+    "single_scattering",
     "thermal_furnace",
     "transmittance",
     "white_furnace",
