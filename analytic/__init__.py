@@ -16,6 +16,7 @@ from fogproof.analytic.radiance_by_quadrature import radiance_by_quadrature
 from fogproof.analytic.rayleigh_coefficient import rayleigh_scattering_coefficient
 from fogproof.analytic.single_scattering import single_scattering
 from fogproof.analytic.transmittance import optical_thickness, transmittance
+from fogproof.analytic.varying_phase import phase_pdf_at
 
 __all__ = [
     "Coefficients",
@@ -29,6 +30,7 @@ __all__ = [
     "phase_cdf",
     "phase_mean_cosine",
     "phase_pdf",
+    "phase_pdf_at",
     "phase_quantile",
     "radiance_by_ode",
     "radiance_by_quadrature",
