@@ -62,6 +62,7 @@ def airlight_integral(
     sigma_t, h, a, b = _checked(sigma_t, h, a, b)
     segments = whole(sigma_t.ravel(), h.ravel(), a.ravel(), b.ravel())
     value, error, name, source = integrate(segments, phase or Isotropic(), method)
+    refuse_beyond(method, value, error)
     return Reference(value.reshape(h.shape), error.reshape(h.shape), name, source)
 
 
@@ -101,16 +102,19 @@ def integrate(
         value, error = value * lit, (error + (2 + tau) * EPS * value) * lit + TINY
         on_light = (h == 0) & (start <= 0) & (end >= 0) & (end > start)
         value[on_light], error[on_light] = np.inf, 0.0
-        bad = ~on_light & ~(error <= WORST * value + 1e-300)
-    if bad.any():
-        i = int(np.argmax(bad))
-        where = f"sigma_t = {sigma[i]:g}, h = {h[i]:g}, a = {start[i]:g}, b = {end[i]:g}"
+    return value, error, module.METHOD, module.SOURCE
+
+
+def refuse_beyond(method: Method, value: np.ndarray, error: np.ndarray) -> None:
+    """Raise `UnsupportedError` if an alternative method leaves any element without two digits."""
+    with np.errstate(invalid="ignore"):
+        bad = ~(error <= WORST * np.abs(value) + 1e-300)
+    if method != "asinh" and bad.any():
         raise UnsupportedError(
-            f"{module.METHOD} does not deliver two digits for {bad.sum()} of {bad.size} segments, the first with {where}; "
-            "use method='asinh'",
+            f"{ALTERNATIVES[method].METHOD} does not deliver two digits for {bad.sum()} of {bad.size} rays, the first "
+            f"at index {int(np.argmax(bad))}; use method='asinh'",
             "method",
         )
-    return value, error, module.METHOD, module.SOURCE
 
 
 def _checked(sigma_t: Any, h: Any, a: Any, b: Any) -> list[np.ndarray]:
