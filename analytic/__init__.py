@@ -12,6 +12,7 @@ from fogproof.analytic.emission import emitted_radiance
 from fogproof.analytic.free_path import free_path
 from fogproof.analytic.furnace import thermal_furnace, white_furnace
 from fogproof.analytic.phase_functions import phase_cdf, phase_mean_cosine, phase_pdf, phase_quantile
+from fogproof.analytic.radiance import radiance
 from fogproof.analytic.radiance_by_ode import radiance_by_ode
 from fogproof.analytic.radiance_by_quadrature import radiance_by_quadrature
 from fogproof.analytic.rayleigh_coefficient import rayleigh_scattering_coefficient
@@ -42,6 +43,7 @@ __all__ = [
     "phase_pdf",
     "phase_pdf_at",
     "phase_quantile",
+    "radiance",
     "radiance_by_ode",
     "radiance_by_quadrature",
     "rayleigh_scattering_coefficient",

@@ -17,13 +17,17 @@ from typing import Any, Literal
 
 from fogproof import analytic
 from fogproof.analytic.airlight import Method
+from fogproof.analytic.airlight_moments import Sampling
+from fogproof.analytic.second_moments import Tracking
 from fogproof.contracts import Reference
 from fogproof.errors import FogproofError, InvalidInputError, shorten
-from fogproof.scene import Isotropic, Medium, PointLight, Ray
+from fogproof.scene import Isotropic, Medium, Ray, Scattering, Scene
 from fogproof.scene.arrays import FloatArray
 from fogproof.scene.complex_numbers import ComplexNumber
 from fogproof.scene.files import input_model, read_fields
+from fogproof.scene.lights import LIGHTS, LightField, PointLight
 from fogproof.scene.media import MEDIA, AnyMediumField
+from fogproof.scene.occluders import OCCLUDERS, OccluderField
 from fogproof.scene.phase_functions import PHASE_FUNCTIONS, PhaseFunctionField
 from fogproof.validate import Channels
 
@@ -48,6 +52,7 @@ def quantities() -> dict[str, Quantity]:
     airlight = {"sigma_t": FloatArray, "h": FloatArray, "a": FloatArray, "b": FloatArray}
     phase = {"phase": PhaseFunctionField}
     how = {"method": (Method, "asinh")}
+    tracker = {"tracking": Tracking, "majorant": (Channels | None, None), "control": (Channels, 0.0)}
     radiance = "W/(m^2 sr)"
     return {
         "optical_thickness": Quantity(analytic.optical_thickness, scene, "1", "integral of sigma_t along the ray"),
@@ -86,9 +91,40 @@ def quantities() -> dict[str, Quantity]:
         ),
         "single_scattering": Quantity(
             analytic.single_scattering,
-            {**scene, "light": PointLight, **how},
+            {**scene, "light": LightField, "occluders": (tuple[OccluderField, ...], ()), **how},
             radiance,
             "airlight alone, without the background; the light's intensity is in W/sr; " + _FORWARD,
+        ),
+        "radiance": Quantity(
+            lambda **scene: analytic.radiance(Scene(**scene)),
+            {
+                **scene,
+                "scattering": (Scattering, "none"),
+                "light": (LightField | None, None),
+                "occluders": (tuple[OccluderField, ...], ()),
+                "ambient": (Channels, 0.0),
+                "background": (Channels, 0.0),
+            },
+            radiance,
+            "everything a camera ray sees: background, emission, and in-scattering as far as `scattering` says",
+        ),
+        "transmittance_variance": Quantity(
+            analytic.transmittance_variance,
+            {**scene, **tracker},
+            "1",
+            "variance of one realisation of a tracker's estimate",
+        ),
+        "transmittance_lookups": Quantity(
+            analytic.transmittance_lookups,
+            {**scene, **tracker},
+            "1",
+            "expected look-ups of the medium in one realisation",
+        ),
+        "single_scattering_variance": Quantity(
+            analytic.single_scattering_variance,
+            {**scene, "light": PointLight, "sampling": Sampling},
+            "(W/(m^2 sr))^2",
+            "variance of one realisation that places its scattering event by `sampling`",
         ),
         "airlight_integral": Quantity(
             analytic.airlight_integral,
@@ -139,11 +175,16 @@ def schema() -> dict[str, Any]:
         [(model, "validation") for model in models.values()], ref_template="#/$defs/{model}"
     )
     definitions = document["$defs"]
-    for kind, cls in {**PHASE_FUNCTIONS, **MEDIA}.items():  # the key that tells the types of a union apart
+    for kind, cls in {
+        **PHASE_FUNCTIONS,
+        **MEDIA,
+        **LIGHTS,
+        **OCCLUDERS,
+    }.items():  # the key that tells the types of a union apart
         if cls.__name__ in definitions:
             definition = definitions[cls.__name__]
             definition["properties"]["kind"] = {"const": kind}
-            if cls is not Medium:  # a medium without a kind is homogeneous
+            if cls not in (Medium, PointLight):  # without a kind a medium is homogeneous, and a light a point
                 definition["required"] = ["kind", *definition.get("required", [])]
     numbers = {
         "description": "a number, nested lists of numbers, or the strings inf, -inf and nan for numbers that JSON lacks"
