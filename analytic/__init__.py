@@ -8,6 +8,8 @@ from fogproof.analytic.airlight import airlight_integral
 from fogproof.analytic.ambient_fog import ambient_fog
 from fogproof.analytic.phase_functions import phase_cdf, phase_pdf
 from fogproof.analytic.single_scattering import single_scattering
+from fogproof.analytic.phase_functions import phase_cdf, phase_mean_cosine, phase_pdf, phase_quantile
+from fogproof.analytic.rayleigh_coefficient import rayleigh_scattering_coefficient
 from fogproof.analytic.transmittance import optical_thickness, transmittance
 
 __all__ = [
@@ -15,7 +17,10 @@ __all__ = [
     "ambient_fog",
     "optical_thickness",
     "phase_cdf",
+    "phase_mean_cosine",
     "phase_pdf",
     "single_scattering",
+    "phase_quantile",
+    "rayleigh_scattering_coefficient",
     "transmittance",
 ]

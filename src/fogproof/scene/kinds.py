@@ -18,10 +18,15 @@ class ByKind:
         from pydantic_core import core_schema
 
         def without_kind(table: Any) -> Any:
-            return {key: value for key, value in table.items() if key != "kind"}
+            # Below here pydantic no longer sees JSON but Python, where its strict mode takes a list for no tuple.
+            return {key: _as_tuple(value) for key, value in table.items() if key != "kind"}
 
         choices: dict[Any, Any] = {
             kind: core_schema.no_info_before_validator_function(without_kind, handler.generate_schema(cls))
             for kind, cls in self.types.items()
         }
         return core_schema.tagged_union_schema(choices, discriminator="kind")
+
+
+def _as_tuple(value: Any) -> Any:
+    return tuple(map(_as_tuple, value)) if isinstance(value, list) else value
