@@ -47,7 +47,7 @@ def polar(phase: Draine | CornetteShanks, xi: np.ndarray) -> Polar:
     k, xi = (g, xi) if g >= 0 else (-g, 1 - xi)
     root = np.sqrt(1 + k * k)
     turn = (1 - k) / (root * ((1 + k) + root))  # the Henyey-Greenstein cdf at mu = 0, at most 1/2
-    at_turn, at_half = (float(_cdf(np.float64(w), np.float64(k), c0, c1)) for w in (turn, 0.5))
+    at_turn, at_half = (float(_cdf(np.array(w), np.array(k), c0, c1)) for w in (turn, 0.5))
     low, high = xi < at_turn, xi >= at_half
     signed = np.where(high, -k, k).astype(xi.dtype)
     # The density of w falls towards mu = 0: Newton's steps from 0, or from 1/2 down to the turning point, stay on their side.
@@ -70,7 +70,10 @@ def _d(w: np.ndarray, g: np.ndarray) -> np.ndarray:
 
 
 def _cdf(w: np.ndarray, g: np.ndarray, c0: float, c1: float) -> np.ndarray:
-    """Return the integral of c0 + c1 mu(w)^2 from 0: that of mu^2 is w less (2/3) a b^2 w^2 (3a + (b^2 - 3a^2) w - 3a g w^2)/d^3."""
+    """Return the integral of c0 + c1 mu(w)^2 from 0.
+
+    With a = 1 - g and b = 1 + g that of mu^2 is w less (2/3) a b^2 w^2 (3a + (b^2 - 3a^2) w - 3a g w^2)/d^3.
+    """
     a, b = 1 - g, 1 + g
     d = _d(w, g)
     less = 2 / 3 * a * b * b * w * w * (3 * a + (b * b - 3 * a * a) * w - 3 * a * g * w * w) / (d * d * d)

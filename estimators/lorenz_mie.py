@@ -64,11 +64,10 @@ def _coefficients(phase: Mie) -> tuple[np.ndarray, np.ndarray]:
         derivative = n / z - 1 / (derivative + n / z)
         if n <= N + 1:
             D[n - 1] = derivative
-    n = np.arange(1, N + 1)
     orders = np.arange(N + 1)
     psi = x * spherical_jn(orders, x)
     xi = psi + 1j * x * spherical_yn(orders, x)
-    electric, magnetic = D[1:] / m + n / x, m * D[1:] + n / x
+    electric, magnetic = D[1:] / m + orders[1:] / x, m * D[1:] + orders[1:] / x
     a = (electric * psi[1:] - psi[:-1]) / (electric * xi[1:] - xi[:-1])
     b = (magnetic * psi[1:] - psi[:-1]) / (magnetic * xi[1:] - xi[:-1])
     return a, b
@@ -86,6 +85,5 @@ def _intensity(phase: Mie, mu: np.ndarray) -> np.ndarray:
         S1 += scale * (a[n - 1] * pi + b[n - 1] * tau)
         S2 += scale * (a[n - 1] * tau + b[n - 1] * pi)
         before, pi = pi, ((2 * n + 1) * mu * pi - (n + 1) * before) / n
-    n = np.arange(1, len(a) + 1)
-    norm = 4 * np.pi * float((2 * n + 1) @ (np.abs(a) ** 2 + np.abs(b) ** 2))
+    norm = 4 * np.pi * float((2 * np.arange(1, len(a) + 1) + 1) @ (np.abs(a) ** 2 + np.abs(b) ** 2))
     return (np.abs(S1) ** 2 + np.abs(S2) ** 2) / norm

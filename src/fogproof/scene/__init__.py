@@ -1,7 +1,14 @@
 """Scenes as plain frozen data that validate themselves. No formula lives here."""
 
+from fogproof.scene.graded_media import (
+    AnisotropicMedium,
+    ExponentialMedium,
+    LinearMedium,
+    PiecewiseConstantMedium,
+)
 from fogproof.scene.lights import PointLight
-from fogproof.scene.media import Medium
+from fogproof.scene.media import AnyMedium, Medium
+from fogproof.scene.opengl_fog import OpenGLFog
 from fogproof.scene.phase_functions import (
     CornetteShanks,
     DoubleHenyeyGreenstein,
@@ -17,26 +24,39 @@ from fogproof.scene.phase_functions import (
     Schlick,
     Tabulated,
 )
+from fogproof.scene.procedural import Procedural
 from fogproof.scene.rays import Ray
 from fogproof.scene.scenes import Scattering, Scene
+from fogproof.scene.varying_phase import Ramp, VaryingPhase
+from fogproof.scene.voxel_grid import VoxelGrid
 
 __all__ = [
+    "AnisotropicMedium",
+    "AnyMedium",
     "CornetteShanks",
     "DoubleHenyeyGreenstein",
     "Draine",
+    "ExponentialMedium",
     "Hazy",
     "HenyeyGreenstein",
     "Isotropic",
+    "LinearMedium",
     "Medium",
     "Mie",
     "Mixture",
     "Murky",
+    "OpenGLFog",
     "PhaseFunction",
+    "PiecewiseConstantMedium",
     "PointLight",
+    "Procedural",
+    "Ramp",
     "Ray",
     "Rayleigh",
     "Scattering",
     "Scene",
     "Schlick",
     "Tabulated",
+    "VaryingPhase",
+    "VoxelGrid",
 ]

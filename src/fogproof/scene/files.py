@@ -43,10 +43,15 @@ def read_fields(types: dict[str, Any], data: Any, origin: str) -> dict[str, Any]
     if not isinstance(data, dict):
         raise InvalidInputError(f"{origin}: must be a table of keys, got {shorten(data)}")
     try:
-        model = _model(tuple(types.items())).model_validate_json(json.dumps(_with_infinities(data)))
+        model = input_model(types).model_validate_json(json.dumps(_with_infinities(data)))
     except pydantic.ValidationError as error:
         raise _complaint(error, data, origin) from None
     return {name: getattr(model, name) for name in types}
+
+
+def input_model(types: dict[str, Any]) -> Any:
+    """Return the pydantic model of an object with these keys; see `read_fields`."""
+    return _model(tuple(types.items()))
 
 
 @cache
@@ -54,7 +59,10 @@ def _model(types: tuple[tuple[str, Any], ...]) -> Any:
     import pydantic
 
     fields: dict[str, Any] = {name: kind if isinstance(kind, tuple) else (kind, ...) for name, kind in types}
-    return pydantic.create_model("Input", __config__=pydantic.ConfigDict(extra="forbid", strict=True), **fields)
+    name = "".join(
+        str(part).title().replace("_", "") for part in getattr(fields.get("quantity", ("",))[0], "__args__", ("Input",))
+    )
+    return pydantic.create_model(name, __config__=pydantic.ConfigDict(extra="forbid", strict=True), **fields)
 
 
 def _with_infinities(value: Any) -> Any:
@@ -67,7 +75,7 @@ def _with_infinities(value: Any) -> Any:
 
 def _complaint(error: Any, data: Any, origin: str) -> InvalidInputError | InvalidValueError:
     """Turn pydantic's report into one sentence; the first fault is told, the others are counted."""
-    faults = {_place(fault["loc"], data): fault for fault in reversed(error.errors())}
+    faults = {_place(fault, data): fault for fault in reversed(error.errors())}
     place, fault = list(faults.items())[-1]
     more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
     cause = fault.get("ctx", {}).get("error")
@@ -87,14 +95,15 @@ def _complaint(error: Any, data: Any, origin: str) -> InvalidInputError | Invali
     return InvalidInputError(f"{origin}: {place} {reason}{more}", place)
 
 
-def _place(loc: tuple[str | int, ...], data: Any) -> str:
+def _place(fault: Any, data: Any) -> str:
     """Return the path of a fault as the user wrote it, without the names of types that pydantic puts in between."""
     parts: list[str] = []
-    for step, part in enumerate(loc):
+    absent_key = fault["type"].startswith("missing")
+    for step, part in enumerate(fault["loc"]):
         present = part in data if isinstance(data, dict) else isinstance(data, list) and part in range(len(data))
         if present:
             data = data[part]
-        elif step < len(loc) - 1 or not isinstance(data, dict) or part == data.get("kind"):
+        elif not (absent_key and step == len(fault["loc"]) - 1):
             continue
         parts.append(str(part))
     return ".".join(parts)
