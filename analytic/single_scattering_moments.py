@@ -7,7 +7,8 @@ import numpy as np
 from fogproof.analytic.airlight_moments import Sampling, airlight_second_moment
 from fogproof.analytic.airlight_phase import airlight_phase
 from fogproof.analytic.error_free import EPS, TINY
-from fogproof.analytic.single_scattering import place, single_scattering
+from fogproof.analytic.ray_and_light import place
+from fogproof.analytic.single_scattering import single_scattering
 from fogproof.contracts import Reference
 from fogproof.errors import UnsupportedError
 from fogproof.scene import Medium, PointLight, Ray
@@ -35,7 +36,7 @@ def single_scattering_second_moment(medium: Medium, ray: Ray, light: PointLight,
     shape = ray.shape if channels is None else (*ray.shape, channels)
     sigma = np.atleast_1d(medium.sigma_t)
     scale = np.atleast_1d(np.multiply(medium.sigma_s, light.intensity)) / (4 * np.pi)
-    where = place(ray, np.array(light.position))
+    where = place(ray, light.position)
     h, a, b, uncertainty = (x[:, None] for x in (where.h, where.a, where.b, where.uncertainty))
     moment = airlight_second_moment(sigma, h, a, b, medium.phase, sampling)
     with np.errstate(all="ignore"):
