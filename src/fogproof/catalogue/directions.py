@@ -267,7 +267,7 @@ def cases() -> list[Case]:
     """Return the direction cases."""
     cornette, draine, table_source = "Cornette & Shanks 1992", "Draine 2003", "piecewise linear in the cosine"
     nishita, schlick = "Nishita, Miyawaki & Nakamae 1987", "Blasi, Le Saec & Schlick 1993"
-    mie = "Bohren & Huffman 1983"
+    mie, table = "Bohren & Huffman 1983", phase_table(DROPLET)
     local = "the local direction is returned without rotation"
     return [
         _case(
@@ -421,15 +421,16 @@ def cases() -> list[Case]:
             _unweighted_component,
             axis=TILTED,
         ),
-        SamplerCase(
-            name="directions/lorenz-mie",
-            title="Lorenz-Mie directions of a water droplet, from a table with weights",
-            make=lambda: Directions(DROPLET, TILTED),
-            reference=lambda x: oracle_pdf(phase_table(DROPLET), TILTED)(x),
-            oracle="phase_pdf of the table",
-            source=mie,
-            twin=Twin("the weights are taken for 1", lambda: Altered(Directions(DROPLET, TILTED), _unweighted)),
-            options={"axis": TILTED, "albedo": 1.0, "cdf": lambda x: rosenblatt(phase_table(DROPLET), TILTED)(x)},
+        direction_case(
+            "directions/lorenz-mie",
+            "Lorenz-Mie directions of a water droplet, from a table with weights",
+            table,
+            float(phase_mean_cosine(table).value),
+            lambda: Directions(DROPLET, TILTED),
+            Twin("the weights are taken for 1", lambda: Altered(Directions(DROPLET, TILTED), _unweighted)),
+            mie,
+            axis=TILTED,
+            options={"albedo": 1.0, "cdf": rosenblatt(table, TILTED)},
             samples=300_000,
         ),
         EstimatorCase(
