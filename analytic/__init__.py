@@ -7,10 +7,6 @@ exact binary64 numbers.
 from fogproof.analytic.airlight import airlight_integral, airlight_table
 from fogproof.analytic.airlight_moments import airlight_second_moment
 from fogproof.analytic.ambient_fog import ambient_fog
-from fogproof.analytic.phase_functions import phase_cdf, phase_pdf
-from fogproof.analytic.single_scattering import single_scattering
-from fogproof.analytic.phase_functions import phase_cdf, phase_mean_cosine, phase_pdf, phase_quantile
-from fogproof.analytic.rayleigh_coefficient import rayleigh_scattering_coefficient
 from fogproof.analytic.coefficients import Coefficients, coefficients
 from fogproof.analytic.emission import emitted_radiance
 from fogproof.analytic.free_path import free_path
@@ -45,7 +41,6 @@ __all__ = [
     "phase_cdf",
     "phase_mean_cosine",
     "phase_pdf",
-    "single_scattering",
     "phase_pdf_at",
     "phase_quantile",
     "radiance",
