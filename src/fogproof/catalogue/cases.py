@@ -36,6 +36,11 @@ class Altered:
         """The original's atoms."""
         return getattr(self.original, "atoms", {})
 
+    @property
+    def eval(self) -> Callable[[np.ndarray], np.ndarray] | None:
+        """What the original's weights are for, if it has any."""
+        return getattr(self.original, "eval", None)
+
     def sample(self, u: np.ndarray) -> Any:
         """Sample as the original does, or as its replacement."""
         return self.original.sample(u) if self.alter_sample is None else self.alter_sample(self.original, u)
