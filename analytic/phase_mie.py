@@ -73,7 +73,7 @@ def mean_cosine(phase: Mie) -> tuple[float, float]:
     same = (a * b.conj()).real @ ((2 * n + 1) / (n * (n + 1)))
     step = (a[:, :-1] * a[:, 1:].conj() + b[:, :-1] * b[:, 1:].conj()).real @ (n * (n + 2) / (n + 1))[:-1]
     values = 8 * np.pi * (same + step) / s.norm
-    return float(values[0]), float(_spread(values)) + 20 * EPS
+    return float(values[0]), float(_spread(values)) + 4 * s.noise
 
 
 @lru_cache(maxsize=64)
@@ -97,7 +97,7 @@ def _series(phase: Mie) -> Series:
     spheres = ((m, x, start), (m, x * (1 + STEP), start), (m * (1 + STEP), x, start), (m, x, start + 1))
     a, b = np.array([[series[:order] for series in _coefficients(*sphere)] for sphere in spheres]).swapaxes(0, 1)
     # Measured: the recurrences drift like sqrt(N), and a_n loses digits when it is small because m is close to 1.
-    return Series(a, b, 3 * EPS * (math.sqrt(order) + 1 + 1 / (abs(m - 1) * max(1, x))))
+    return Series(a, b, 3 * EPS * (math.sqrt(order) + 1 + 1 / (abs(m - 1) * max(1, x**0.5))))
 
 
 def _starting_order(z: float, x: float, order: int) -> int:
