@@ -17,7 +17,7 @@ import numpy as np
 
 from fogproof.analytic.airlight_phase import airlight_phase
 from fogproof.analytic.breakpoints import breakpoints
-from fogproof.analytic.coefficients import coefficients, share_at
+from fogproof.analytic.coefficients import coefficients
 from fogproof.analytic.convex_shapes import chord, contains, through
 from fogproof.analytic.error_free import EPS, TINY
 from fogproof.analytic.light_cone import edges, intensity_at, lit_by_cone
@@ -26,6 +26,7 @@ from fogproof.analytic.phase_functions import phase_pdf
 from fogproof.analytic.ray_and_light import Placement, place
 from fogproof.analytic.shadows import shadow_of_direction, shadow_of_point
 from fogproof.analytic.transmittance import thickness
+from fogproof.analytic.varying_phase import share_at
 from fogproof.errors import UnsupportedError
 from fogproof.scene import AnyMedium, Medium, Ray, VaryingPhase
 from fogproof.scene.lights import DirectionalLight, PointLight, SpotLight, strength

@@ -31,8 +31,8 @@ SOURCE = "Bouguer 1729, Beer 1852; Chandrasekhar 1960, Radiative Transfer, secti
 def optical_thickness(medium: AnyMedium, ray: Ray) -> Reference:
     """Return tau = integral of sigma_t along the ray, dimensionless, shape R or R + (channels,).
 
-    Positions are origin + t direction, with the direction as stored. An empty medium has tau = 0 on every ray, the
-    infinite one included.
+    Positions are origin + t direction, with the direction as stored; in heterogeneous media components below 1e-100
+    count as 0. An empty medium has tau = 0 on every ray, the infinite one included.
     Error: 1 EPS relative for a homogeneous medium; see the method named in the result for the others.
     """
     tau = thickness(medium, ray, channels_of(medium))

@@ -10,7 +10,8 @@ import numpy as np
 from fogproof.checks.charts import Chart
 from fogproof.checks.quadrature import integrate_boxes
 
-_GRID = {1: (1024,), 2: (64, 16)}
+_QUANTILES = {1: (1024,), 2: (48, 12)}
+_UNIFORM = {1: (32,), 2: (16, 8)}
 _COUNT_PER_CELL = 64  # samples expected in a cell, at least, on average
 
 
@@ -52,16 +53,21 @@ class Cells:
 
 
 def pilot_edges(chart: Chart, pilot: np.ndarray, samples: int) -> tuple[np.ndarray, ...]:
-    """Return edges at quantiles of the pilot's (m, k) coordinates: about equal counts, never from the tested sample."""
-    wanted = np.array(_GRID[len(chart.low)])
-    while wanted.prod() * _COUNT_PER_CELL > samples and wanted.max() > 4:
-        wanted = np.maximum(wanted // 2, 4)
+    """Return edges at quantiles of the pilot's (m, k) coordinates: about equal counts, never from the tested sample.
+
+    A few edges at equal distances are added: they see what the pilot of a wrong sampler never visits.
+    """
+    dimensions = len(chart.low)
+    quantiles, uniform = np.array(_QUANTILES[dimensions]), np.array(_UNIFORM[dimensions])
+    while (quantiles + uniform).prod() * _COUNT_PER_CELL > samples and quantiles.max() > 4:
+        quantiles, uniform = np.maximum(quantiles // 2, 4), np.maximum(uniform // 2, 2)
     edges = []
-    for axis, bins in enumerate(wanted):
-        inner = np.quantile(pilot[:, axis], np.arange(1, bins) / bins) if len(pilot) else np.empty(0)
+    for axis in range(dimensions):
         low, high = chart.low[axis], chart.high[axis]
-        inner = np.unique(inner[(inner > low) & (inner < high)])
-        edges.append(np.concatenate([[low], inner, [high]]))
+        shares = np.arange(1, quantiles[axis]) / quantiles[axis]
+        inner = np.quantile(pilot[:, axis], shares) if len(pilot) else np.empty(0)
+        inner = inner[(inner > low) & (inner < high)]
+        edges.append(np.unique(np.concatenate([inner, np.linspace(low, high, uniform[axis] + 1)])))
     return tuple(edges)
 
 

@@ -1,1 +1,8 @@
-""""""
+"""The command line. Machine-readable output goes to stdout, what is for people to stderr.
+
+Exit codes: 0 every outcome as expected, 1 something rejected, 3 nothing rejected but something inconclusive, 2 usage or bad input.
+"""
+
+from fogproof.cli.main import main
+
+__all__ = ["main"]

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-import numpy as np
-
 from fogproof.validate import as_float_array
 
 
@@ -24,4 +22,5 @@ class _FromNestedLists:
         }
 
 
-FloatArray = Annotated[np.ndarray, _FromNestedLists()]
+# `Any` for type checkers, because the constructors accept whatever NumPy can make an array of.
+FloatArray = Annotated[Any, _FromNestedLists()]

@@ -22,7 +22,7 @@ class Ray:
 
     origin: FloatArray
     direction: FloatArray
-    length: FloatArray = np.inf  # type: ignore[assignment]  # __post_init__ makes it an array
+    length: FloatArray = np.inf
 
     def __post_init__(self) -> None:
         origin, direction = points("origin", self.origin), unit_vectors("direction", self.direction)

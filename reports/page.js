@@ -1,0 +1,51 @@
+// Filter by outcome and by words, and open the case that the address names. The page is complete without this.
+"use strict";
+{
+  const form = document.getElementById("filter");
+  const rows = [...document.querySelectorAll("tr[data-status]")];
+  const sections = [...document.querySelectorAll("details.case")];
+  const words = rows.map((row, i) => {
+    const section = sections[i] ?? row;
+    const drawings = new Set(section.querySelectorAll("svg"));
+    const walker = document.createTreeWalker(section, NodeFilter.SHOW_ELEMENT | NodeFilter.SHOW_TEXT, (node) =>
+      drawings.has(node) ? NodeFilter.FILTER_REJECT : NodeFilter.FILTER_ACCEPT);
+    let text = "";
+    for (let node = walker.nextNode(); node; node = walker.nextNode()) {
+      if (node.nodeType === Node.TEXT_NODE) text += node.data;
+    }
+    return text.toLowerCase();
+  });
+
+  const apply = () => {
+    const status = form.elements.status.value;
+    const wanted = form.elements.words.value.toLowerCase().split(/\s+/).filter(Boolean);
+    let shown = 0;
+    rows.forEach((row, i) => {
+      const fits = (!status || row.dataset.status === status) && wanted.every((word) => words[i].includes(word));
+      row.hidden = !fits;
+      if (sections[i]) sections[i].hidden = !fits;
+      shown += fits;
+    });
+    form.querySelector("output").value = `${shown} of ${rows.length} shown`;
+  };
+
+  const open = () => {
+    let id = location.hash.slice(1);
+    try { id = decodeURIComponent(id); } catch { /* not encoded: take it as it stands */ }
+    const target = id && document.getElementById(id);
+    const section = target && target.closest("details.case");
+    if (!section) return;
+    section.hidden = false;
+    section.open = true;
+    target.scrollIntoView();
+  };
+
+  if (form) {
+    form.hidden = false;
+    form.addEventListener("input", apply);
+    form.addEventListener("submit", (event) => event.preventDefault());
+    apply();
+  }
+  addEventListener("hashchange", open);
+  open();
+}

@@ -1,0 +1,148 @@
+"""What a case of the catalogue is: a subject, the reference that says what is right, and a broken twin."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+
+from fogproof.checks import Outcome, Verdict, check_estimator, check_sampler
+from fogproof.contracts import Draw, Estimator, Reference, Sampler
+from fogproof.domains import Domain
+
+
+@dataclass(frozen=True)
+class Altered:
+    """A sampler with a part replaced: how most broken twins are made. What is not replaced is the original's."""
+
+    original: Sampler
+    alter_sample: Callable[[Any, np.ndarray], Any] | None = None
+    alter_pdf: Callable[[Any, np.ndarray], np.ndarray] | None = None
+
+    @property
+    def domain(self) -> Domain:
+        """The original's domain."""
+        return self.original.domain
+
+    @property
+    def dimensions(self) -> int | None:
+        """The original's number of uniforms."""
+        return self.original.dimensions
+
+    @property
+    def atoms(self) -> Mapping[float, float]:
+        """The original's atoms."""
+        return getattr(self.original, "atoms", {})
+
+    @property
+    def eval(self) -> Callable[[np.ndarray], np.ndarray] | None:
+        """What the original's weights are for, if it has any."""
+        return getattr(self.original, "eval", None)
+
+    def sample(self, u: np.ndarray) -> Any:
+        """Sample as the original does, or as its replacement."""
+        return self.original.sample(u) if self.alter_sample is None else self.alter_sample(self.original, u)
+
+    def pdf(self, x: np.ndarray) -> np.ndarray:
+        """Return the original's density, or its replacement's."""
+        return self.original.pdf(x) if self.alter_pdf is None else self.alter_pdf(self.original, x)
+
+
+@dataclass(frozen=True)
+class Twin:
+    """A copy of the subject with one planted error, which the same checks must reject."""
+
+    error: str
+    make: Callable[[], Any]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SamplerCase:
+    """A sampler against its oracle.
+
+    make        builds the sampler; nothing heavy happens before
+    reference   x -> `Reference`: the oracle's density
+    oracle      the name of the oracle's functions, for people
+    options     further arguments of `check_sampler`: cdf, axis, mean_cosine, albedo, precision, …
+    source      the paper
+    samples     most samples to draw
+    weight      share of the run's false-alarm probability, relative to the other cases
+    expected    the outcome; "rejected" is a known finding, and `reason` says why
+    needs       the extra that must be installed, "" if none
+    """
+
+    kind: Literal["sampler"] = "sampler"
+    name: str
+    title: str
+    make: Callable[[], Sampler]
+    reference: Callable[[np.ndarray], Reference]
+    oracle: str
+    source: str
+    twin: Twin
+    options: Mapping[str, Any] = field(default_factory=dict)
+    samples: int = 1_000_000
+    weight: float = 1.0
+    expected: Outcome = "not rejected"
+    reason: str = ""
+    needs: str = ""
+
+    def run(self, alpha: float, seed: int, samples: int | None = None, twin: bool = False) -> Verdict:
+        """Check the subject, or its twin, inside the false-alarm probability alpha."""
+        sampler = self.twin.make() if twin else self.make()
+        return check_sampler(
+            sampler.sample,
+            sampler.pdf,
+            sampler.domain,
+            dimensions=sampler.dimensions,
+            atoms=getattr(sampler, "atoms", None),
+            eval=getattr(sampler, "eval", None),
+            reference=self.reference,
+            samples=samples or self.samples,
+            alpha=alpha,
+            seed=seed,
+            **self.options,
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class EstimatorCase:
+    """An estimator against its oracle; the fields are those of `SamplerCase`, but the reference is one value."""
+
+    kind: Literal["estimator"] = "estimator"
+    name: str
+    title: str
+    make: Callable[[], Estimator]
+    reference: Callable[[], Reference]
+    oracle: str
+    source: str
+    twin: Twin
+    options: Mapping[str, Any] = field(default_factory=dict)
+    samples: int = 1_000_000
+    weight: float = 1.0
+    expected: Outcome = "not rejected"
+    reason: str = ""
+    needs: str = ""
+
+    def run(self, alpha: float, seed: int, samples: int | None = None, twin: bool = False) -> Verdict:
+        """Check the subject, or its twin, inside the false-alarm probability alpha."""
+        estimator = self.twin.make() if twin else self.make()
+        return check_estimator(
+            estimator.draw, self.reference(), samples=samples or self.samples, alpha=alpha, seed=seed, **self.options
+        )
+
+
+Case = SamplerCase | EstimatorCase
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """An estimator made of a single function, for twins."""
+
+    draw: Callable[[np.random.Generator, int], Any]
+
+
+def points_of(result: Any) -> np.ndarray:
+    """Return the points of what a sampler returned, a `Draw` or bare points."""
+    return result.x if isinstance(result, Draw) else np.asarray(result)

@@ -1,0 +1,85 @@
+"""Equiangular sampling against the law that defines it: the angle seen from the light is uniform."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from fogproof.analytic import airlight_integral
+from fogproof.catalogue.cases import Altered, SamplerCase, Twin
+from fogproof.contracts import Reference
+from fogproof.estimators import Equiangular
+
+
+def _density(h: float, a: float, b: float) -> Callable[[np.ndarray], Reference]:
+    """The density is the airlight integrand of a medium without extinction, 1 / (h^2 + t^2), over its integral."""
+
+    def reference(t: np.ndarray) -> Reference:
+        whole = airlight_integral(0.0, h, a, b)
+        value = 1 / (h * h + t * t) / whole.value
+        return Reference(value, value * (whole.error / whole.value + 1e-15), whole.method, "Kulla & Fajardo 2012")
+
+    return reference
+
+
+def _case(
+    name: str, title: str, h: float, a: float, b: float, error: str, sample: Any = None, pdf: Any = None
+) -> SamplerCase:
+    def make() -> Equiangular:
+        return Equiangular(h, a, b)
+
+    return SamplerCase(
+        name=f"equiangular/{name}",
+        title=title,
+        make=make,
+        reference=_density(h, a, b),
+        oracle="airlight_integral at sigma_t = 0",
+        source="Kulla & Fajardo 2012",
+        twin=Twin(error, lambda: Altered(make(), sample, pdf)),
+    )
+
+
+def _uniform(sampler: Equiangular, u: np.ndarray) -> np.ndarray:
+    return sampler.a + (sampler.b - sampler.a) * u[:, 0]
+
+
+def _without_h(sampler: Equiangular, t: np.ndarray) -> np.ndarray:
+    return sampler.pdf(t) / sampler.h
+
+
+def _from_camera(sampler: Equiangular, u: np.ndarray) -> np.ndarray:
+    return np.minimum(sampler.sample(u).x - sampler.a, sampler.b)
+
+
+def _mirrored(sampler: Equiangular, u: np.ndarray) -> np.ndarray:
+    return np.maximum(-sampler.sample(u).x, sampler.a)
+
+
+def cases() -> list[SamplerCase]:
+    """Return the equiangular cases."""
+    return [
+        _case("beside", "Equiangular, light beside the ray", 0.5, -1.0, 3.0, "uniform in t", _uniform),
+        _case(
+            "grazing",
+            "Equiangular, light a millimetre from the ray",
+            1e-3,
+            -1.0,
+            2.0,
+            "the density lacks the factor h",
+            None,
+            _without_h,
+        ),
+        _case("behind", "Equiangular, light far behind the camera", 1e-3, 50.0, 60.0, "uniform in t", _uniform),
+        _case(
+            "ahead",
+            "Equiangular, light beyond the surface",
+            0.2,
+            -4.0,
+            -1.0,
+            "t counted from the camera, not the foot",
+            _from_camera,
+        ),
+        _case("infinite", "Equiangular on a ray without end", 2.0, -3.0, np.inf, "the sign of t is lost", _mirrored),
+    ]

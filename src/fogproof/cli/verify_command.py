@@ -1,0 +1,155 @@
+"""`fogproof verify`."""
+
+from __future__ import annotations
+
+import datetime
+import json
+import shlex
+import sys
+import time
+from pathlib import Path
+
+import click
+
+from fogproof.checks import fresh_seed
+from fogproof.errors import InvalidValueError
+from fogproof.verify import Result, exit_code, record, run, select
+
+
+@click.command("verify")
+@click.argument("cases", nargs=-1, metavar="[CASE]...")
+@click.option(
+    "--report",
+    "folder",
+    type=click.Path(path_type=Path, file_okay=False),
+    help="Write the page, figures and results here.",
+)
+@click.option(
+    "--seed", type=click.IntRange(min=0), help="Seed of the run; a fresh one is drawn and printed by default."
+)
+@click.option(
+    "--alpha", type=float, default=1e-6, show_default=True, help="False-alarm probability of the whole catalogue."
+)
+@click.option(
+    "--workers", type=click.IntRange(min=1), default=2, show_default=True, help="Threads; results do not depend on it."
+)
+@click.option("--json", "as_json", is_flag=True, help="Print the record of the run as JSON instead of rows.")
+def command(
+    cases: tuple[str, ...], folder: Path | None, seed: int | None, alpha: float, workers: int, as_json: bool
+) -> int:
+    """Check every sampler and estimator against its reference.
+
+    CASE is a name, a folder of names, or a glob; without any, the whole catalogue runs.
+
+    \b
+    Example:  fogproof verify directions 'mitsuba/hg*' --report build/report
+    """
+    if not 0 < alpha < 1:
+        raise InvalidValueError("--alpha", "must lie in (0, 1)", alpha)
+    chosen = select(cases)
+    if folder is not None:
+        from fogproof.reports import prepare_folder
+
+        prepare_folder(folder)
+    seed = fresh_seed() if seed is None else seed
+    started, clock = datetime.datetime.now(datetime.UTC), time.perf_counter()
+    results: list[Result] = []
+    interrupted = False
+    width = max(len(case.name) for case in chosen)
+    if not as_json:
+        click.echo(_row(width, "case", "outcome", "smallest p", "resolution", "samples", "seconds"))
+    try:
+        with _progress(len(chosen)) as advance:
+            for result in run(chosen, seed=seed, alpha=alpha, workers=workers):
+                results.append(result)
+                if not as_json:
+                    advance.print(_describe(width, result))
+                advance(result.case.name)
+    except KeyboardInterrupt:
+        interrupted = True
+        click.echo(f"stopped after {len(results)} of {len(chosen)} cases; these are kept", err=True)
+    run_record = record(
+        results,
+        seed=seed,
+        alpha=alpha,
+        command=shlex.join(["fogproof", *sys.argv[1:]]),
+        started=started.isoformat(timespec="seconds"),
+        seconds=time.perf_counter() - clock,
+    )
+    if as_json:
+        click.echo(json.dumps(run_record))
+    _explain(results, seed)
+    if folder is not None:
+        from fogproof.reports import write_report
+
+        page = write_report(run_record, folder)
+        click.echo(f"report: {page}", err=True)
+    return 130 if interrupted else exit_code(results)
+
+
+def _row(width: int, *cells: str) -> str:
+    name, outcome, p, resolution, samples, seconds = cells
+    return f"{name:{width}}  {outcome:12}  {p:>10}  {resolution:34}  {samples:>8}  {seconds:>7}".rstrip()
+
+
+def _describe(width: int, result: Result) -> str:
+    verdict = result.verdict
+    if verdict is None:
+        return _row(width, result.case.name, result.status, "", result.reason, "", f"{result.seconds:.2f}")
+    p = "" if verdict.p_value is None else f"{verdict.p_value:.2g}"
+    resolution = "" if verdict.resolution is None else f"{verdict.resolution.value:.2g} {verdict.resolution.kind}"
+    outcome = verdict.outcome if result.status in ("passed", "rejected", "inconclusive") else f"{result.status}"
+    return _row(width, result.case.name, outcome, p, resolution, str(verdict.samples), f"{result.seconds:.2f}")
+
+
+def _explain(results: list[Result], seed: int) -> None:
+    for result in results:
+        if not result.good:
+            what = result.reason if result.verdict is None else str(result.verdict)
+            click.echo(
+                f"\n{result.case.name}: {what}\n  reproduce: fogproof verify '{result.case.name}' --seed {seed}",
+                err=True,
+            )
+    counts: dict[str, int] = {}
+    for result in results:
+        counts[result.status] = counts.get(result.status, 0) + 1
+    summary = ", ".join(f"{count} {status}" for status, count in counts.items())
+    click.echo(f"{len(results)} cases: {summary}; seed {seed}", err=True)
+
+
+class _Advance:
+    """Moves the progress bar, and prints rows above it."""
+
+    def __init__(self, bar: object | None, task: object) -> None:
+        self._bar, self._task = bar, task
+
+    def __call__(self, name: str) -> None:
+        if self._bar is not None:
+            self._bar.update(self._task, advance=1, description=name)  # type: ignore[attr-defined]
+
+    def print(self, row: str) -> None:
+        click.echo(row)
+
+
+class _progress:  # noqa: N801 - reads as a with-statement
+    """A rich progress bar on stderr; nothing at all where stderr is not a terminal."""
+
+    def __init__(self, total: int) -> None:
+        self._total = total
+        self._bar: object | None = None
+
+    def __enter__(self) -> _Advance:
+        if not sys.stderr.isatty():
+            return _Advance(None, None)
+        from rich.console import Console
+        from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+        columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+        bar = Progress(*columns, console=Console(stderr=True), transient=True, redirect_stdout=True)
+        bar.start()
+        self._bar = bar
+        return _Advance(bar, bar.add_task("starting", total=self._total))
+
+    def __exit__(self, *_: object) -> None:
+        if self._bar is not None:
+            self._bar.stop()  # type: ignore[attr-defined]

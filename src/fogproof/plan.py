@@ -1,0 +1,170 @@
+"""`plan`: which terms of the volume rendering equation a scene needs, which solver and estimator serve it, and why."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from fogproof.scene import (
+    AnisotropicMedium,
+    AnyMedium,
+    ExponentialMedium,
+    LinearMedium,
+    Medium,
+    OpenGLFog,
+    PiecewiseConstantMedium,
+    Procedural,
+    Scene,
+    VoxelGrid,
+)
+from fogproof.scene.lights import PointLight, SpotLight, strength
+
+
+@dataclass(frozen=True)
+class Term:
+    """One term of the volume rendering equation, kept or dropped, and why."""
+
+    name: str
+    kept: bool
+    why: str
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The terms of a scene, the oracle's function that solves it, and the estimator that serves it ("" if none is needed)."""
+
+    terms: tuple[Term, ...]
+    solver: str
+    estimator: str
+    why: str
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the JSON-ready form."""
+        terms = [{"name": term.name, "kept": term.kept, "why": term.why} for term in self.terms]
+        return {"terms": terms, "solver": self.solver, "estimator": self.estimator, "why": self.why}
+
+    def __str__(self) -> str:
+        width = max(len(term.name) for term in self.terms)
+        lines = [f"{'keep' if term.kept else 'drop'}  {term.name:{width}}  {term.why}" for term in self.terms]
+        solved = [f"solver     {self.solver}", f"estimator  {self.estimator or 'none'}", f"           {self.why}"]
+        return "\n".join(lines + solved)
+
+
+def plan(scene: Scene) -> Plan:
+    """Return the cheapest exact or unbiased treatment of a scene."""
+    medium = scene.medium
+    tracking = _TRACKING[type(medium)]
+    empty = not _present(medium)
+    scatters, absorbs = not empty and _any(_scattering(medium)), not empty and _any(_absorption(medium))
+    emits = absorbs and _any(medium.emission)
+    background = _any(scene.background)
+    light = scene.scattering == "single" and scene.light is not None and _any(strength(scene.light)) and scatters
+    ambient = scene.scattering == "ambient" and _any(scene.ambient) and scatters
+    terms = (
+        Term("attenuation", not empty, "sigma_t = 0: T = 1" if empty else tracking),
+        Term("background", background, "attenuated by T" if background else "its radiance is 0"),
+        Term("emission", emits, "sigma_a L_e > 0" if emits else "sigma_a L_e = 0"),
+        Term("in-scattering", light or ambient, _in_scattering(scene, scatters, light, ambient)),
+        Term("colour", *_colour(scene)),
+    )
+    homogeneous = isinstance(medium, Medium)
+    if light and homogeneous and isinstance(scene.light, PointLight | SpotLight):
+        return Plan(
+            terms,
+            "single_scattering",
+            "EquiangularAirlight",
+            "the airlight integral has no elementary form but converges fast after t = h sinh s; equiangular sampling cancels"
+            " the light's 1/r^2",
+        )
+    if light and homogeneous:
+        why = "in-scattered radiance from outside: the free path places the event, no 1/r^2 is in the way"
+        return Plan(terms, "single_scattering", "FreePathAirlight", why)
+    if light:
+        why = (
+            "nested adaptive quadrature; equiangular sampling with the transmittance of both legs estimated by tracking"
+        )
+        return Plan(terms, "single_scattering", "equiangular sampling with ratio tracking", why)
+    if emits or ambient:
+        what = (
+            "the closed lerp, no integral is left" if homogeneous else "a lerp over the optical thickness, cell by cell"
+        )
+        return Plan(terms, "ambient_fog", "AnalogFog", f"sources that are constant along the ray: {what}")
+    if not empty:
+        estimator = "AnalogTransmittance" if homogeneous else _ESTIMATOR[type(medium)]
+        return Plan(terms, "transmittance", estimator, "nothing is gained along the ray: the background times T")
+    return Plan(terms, "the background itself", "", "an empty medium changes nothing: no random numbers at all")
+
+
+_TRACKING: dict[type, str] = {
+    Medium: "homogeneous: T = exp(-sigma_t s), no tracking",
+    AnisotropicMedium: "constant along each ray: T = exp(-sigma_t(w) s), no tracking",
+    LinearMedium: "linear extinction: closed form, no tracking",
+    ExponentialMedium: "exponential extinction: closed form, no tracking",
+    OpenGLFog: "a function of the distance from the eye: closed form, no tracking",
+    PiecewiseConstantMedium: "layers: a sum over their boundaries",
+    VoxelGrid: "voxels: a sum over the crossed cells, exact in each",
+    Procedural: "a user's function: tracking under its majorant",
+}
+_ESTIMATOR: dict[type, str] = {
+    AnisotropicMedium: "AnalogTransmittance",
+    LinearMedium: "free paths by the closed inverse",
+    ExponentialMedium: "free paths by the closed inverse",
+    OpenGLFog: "free paths by the closed inverse",
+    PiecewiseConstantMedium: "regular tracking",
+    VoxelGrid: "regular tracking",
+    Procedural: "ratio tracking",
+}
+
+
+def _any(value: Any) -> bool:
+    """Return whether a coefficient is anywhere above 0; a function is taken to be."""
+    return callable(value) or bool(np.any(value))
+
+
+def _present(medium: AnyMedium) -> bool:
+    match medium:
+        case Medium() | PiecewiseConstantMedium() | VoxelGrid():
+            return bool(np.any(medium.sigma_t))
+        case LinearMedium():
+            return bool(np.any(np.greater(medium.sigma_0, 0))) or bool(np.any(medium.gradient))
+        case ExponentialMedium():
+            return bool(np.any(medium.sigma_0))
+        case AnisotropicMedium():
+            return bool(np.any(medium.sigma)) and bool(np.any(medium.S))
+        case OpenGLFog(mode="linear"):
+            return True
+        case OpenGLFog():
+            return bool(medium.density)
+    return True
+
+
+def _scattering(medium: AnyMedium) -> Any:
+    return medium.sigma_s if isinstance(medium, Medium) else medium.albedo
+
+
+def _absorption(medium: AnyMedium) -> Any:
+    if isinstance(medium, Medium):
+        return medium.sigma_a
+    return medium.albedo if callable(medium.albedo) else np.subtract(1.0, medium.albedo)
+
+
+def _in_scattering(scene: Scene, scatters: bool, light: bool, ambient: bool) -> str:
+    if not scatters:
+        return "sigma_s = 0"
+    if scene.scattering == "none":
+        return "scattering = 'none'"
+    if light:
+        shadows = f", shadows of {len(scene.occluders)} occluders" if scene.occluders else ""
+        return f"one bounce from the {type(scene.light).__name__}, phase function {type(scene.medium.phase).__name__}{shadows}"
+    if ambient:
+        return "constant in-scattered radiance: the phase function integrates to 1 and drops out"
+    return "the light is off" if scene.scattering == "single" else "the ambient radiance is 0"
+
+
+def _colour(scene: Scene) -> tuple[bool, str]:
+    values = [scene.ambient, scene.background, strength(scene.light) if scene.light else 0.0]
+    counts = {len(value) for value in values if isinstance(value, tuple)} | {scene.medium.channels}
+    counts -= {None}
+    return (True, f"{counts.pop()} channels") if counts else (False, "grey: one channel")
