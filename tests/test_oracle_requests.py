@@ -11,7 +11,8 @@ import pytest
 
 from fogproof import HenyeyGreenstein, analytic
 from fogproof.checks import jsonable
-from fogproof.oracle import PROTOCOL, answer_text, quantities, schema
+from fogproof.oracle import PROTOCOL, answer_text, schema
+from fogproof.quantities import quantities
 
 ROOT = Path(__file__).resolve().parent.parent
 RAY = {"origin": [0, 0, -2], "direction": [0, 0, 1], "length": 5}
@@ -32,6 +33,21 @@ REQUESTS = [
     {"quantity": "white_furnace", "medium": {"sigma_a": 0, "sigma_s": 3}, "ray": RAY},
     {"quantity": "thermal_furnace", "medium": {**FOG, "emission": 2}, "ray": RAY, "radiance": 2},
     {"quantity": "single_scattering", "medium": {**FOG, "phase": MIXED}, "ray": RAY, "light": LAMP},
+    {"quantity": "single_scattering", "medium": FOG, "ray": RAY, "light": {"kind": "environment", "radiance": 2}},
+    {"quantity": "single_scattering", "medium": FOG, "ray": RAY, "light": LAMP,
+     "occluders": [{"kind": "sphere", "center": [0.5, 0.5, 0], "radius": 0.1}]},
+    {"quantity": "radiance", "medium": {**FOG, "emission": 1}, "ray": RAY, "scattering": "single", "light": LAMP, "background": 2},
+    {"quantity": "transmittance_second_moment", "medium": VOXELS, "ray": RAY,
+     "tracking": "residual-ratio", "majorant": 2, "control": 1},
+    {"quantity": "ambient_fog_variance", "medium": FOG, "ray": RAY, "ambient": 1},
+    {"quantity": "air_cross_section", "wavelength": [4e-7, 5e-7]},
+    {"quantity": "air_optical_depth", "wavelength": 5e-7},
+    {"quantity": "plane_parallel_sky", "tau": [0.1, 0.3], "mu_sun": 0.5, "mu_view": 0.9, "azimuth": 0},
+    {"quantity": "sky_colour", "mu_sun": 0.5, "mu_view": [0.5, 0.9], "azimuth": 0},
+    {"quantity": "sun_colour", "air_mass": [1, 10]},
+    {"quantity": "transmittance_variance", "medium": ATMOSPHERE, "ray": RAY, "tracking": "ratio", "majorant": 2},
+    {"quantity": "transmittance_lookups", "medium": FOG, "ray": RAY, "tracking": "delta", "majorant": 2},
+    {"quantity": "single_scattering_variance", "medium": FOG, "ray": RAY, "light": LAMP, "sampling": "equiangular"},
     {"quantity": "airlight_integral", "sigma_t": 0.5, "h": [0.1, 1], "a": -2, "b": "inf", "phase": HG},
     {"quantity": "airlight_integral", "sigma_t": 0.5, "h": 1, "a": -2, "b": 3, "method": "pegoraro2009"},
     {"quantity": "airlight_table", "sigma_t": 0.5, "h": [0.1, 1], "a": [-2, -1], "b": [0, 1, 2]},
@@ -42,6 +58,9 @@ REQUESTS = [
     {"quantity": "rayleigh_scattering_coefficient", "diameter": 3e-10, "refractive_index": [1.5, 0.1], "number_density": 2.5e25,
      "wavelength": [4e-7, 7e-7]},
 ]  # fmt: skip
+
+AIRLIGHT, METHOD = [request for request in REQUESTS if request["quantity"] == "airlight_integral"]
+PHASE = next(request for request in REQUESTS if request["quantity"] == "phase_pdf")
 
 
 @pytest.fixture(scope="module")
@@ -69,7 +88,7 @@ def test_a_request_is_valid_and_answered(published, request_):
 
 
 def test_answers_are_those_of_the_functions():
-    answer = answer_text(json.dumps(REQUESTS[9]))
+    answer = answer_text(json.dumps(AIRLIGHT))
     direct = analytic.airlight_integral(0.5, [0.1, 1], -2, np.inf, HenyeyGreenstein(0.6))
     np.testing.assert_array_equal(answer["value"], direct.value)
 
@@ -83,11 +102,11 @@ FAULTS = [
     (json.dumps({**REQUESTS[1], "ray": {**RAY, "length": -1}}), "ray.length", "invalid-value", "length must be > 0"),
     (json.dumps({**REQUESTS[1], "medium": {"sigma_a": 1}}), "medium.sigma_s", "invalid-input", "is missing"),
     (json.dumps({**REQUESTS[1], "medium": {**FOG, "kind": "gas"}}), "medium", "invalid-input", "known are"),
-    (json.dumps({**REQUESTS[9], "method": "magic"}), "method", "invalid-input", "method"),
-    (json.dumps({**REQUESTS[9], "h": -1}), "h", "invalid-value", "h must be finite and >= 0"),
-    (json.dumps({**REQUESTS[12], "mu": 1.5}), "mu", "invalid-value", "mu"),
-    (json.dumps({**REQUESTS[12], "phase": {"kind": "henyey-greenstein", "g": 1}}), "phase.g", "invalid-value", "open interval"),
-    (json.dumps({**REQUESTS[10], "phase": {"kind": "rayleigh"}, "method": "sun2005"}), "", "unsupported", ""),
+    (json.dumps({**AIRLIGHT, "method": "magic"}), "method", "invalid-input", "method"),
+    (json.dumps({**AIRLIGHT, "h": -1}), "h", "invalid-value", "h must be finite and >= 0"),
+    (json.dumps({**PHASE, "mu": 1.5}), "mu", "invalid-value", "mu"),
+    (json.dumps({**PHASE, "phase": {"kind": "henyey-greenstein", "g": 1}}), "phase.g", "invalid-value", "open interval"),
+    (json.dumps({**METHOD, "phase": {"kind": "rayleigh"}, "method": "sun2005"}), "", "unsupported", ""),
 ]  # fmt: skip
 
 

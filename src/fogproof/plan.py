@@ -19,6 +19,7 @@ from fogproof.scene import (
     Scene,
     VoxelGrid,
 )
+from fogproof.scene.lights import PointLight, SpotLight, strength
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,7 @@ def plan(scene: Scene) -> Plan:
     scatters, absorbs = not empty and _any(_scattering(medium)), not empty and _any(_absorption(medium))
     emits = absorbs and _any(medium.emission)
     background = _any(scene.background)
-    light = scene.scattering == "single" and scene.light is not None and _any(scene.light.intensity) and scatters
+    light = scene.scattering == "single" and scene.light is not None and _any(strength(scene.light)) and scatters
     ambient = scene.scattering == "ambient" and _any(scene.ambient) and scatters
     terms = (
         Term("attenuation", not empty, "sigma_t = 0: T = 1" if empty else tracking),
@@ -69,7 +70,7 @@ def plan(scene: Scene) -> Plan:
         Term("colour", *_colour(scene)),
     )
     homogeneous = isinstance(medium, Medium)
-    if light and homogeneous:
+    if light and homogeneous and isinstance(scene.light, PointLight | SpotLight):
         return Plan(
             terms,
             "single_scattering",
@@ -77,6 +78,9 @@ def plan(scene: Scene) -> Plan:
             "the airlight integral has no elementary form but converges fast after t = h sinh s; equiangular sampling cancels"
             " the light's 1/r^2",
         )
+    if light and homogeneous:
+        why = "in-scattered radiance from outside: the free path places the event, no 1/r^2 is in the way"
+        return Plan(terms, "single_scattering", "FreePathAirlight", why)
     if light:
         why = (
             "nested adaptive quadrature; equiangular sampling with the transmittance of both legs estimated by tracking"
@@ -152,14 +156,15 @@ def _in_scattering(scene: Scene, scatters: bool, light: bool, ambient: bool) -> 
     if scene.scattering == "none":
         return "scattering = 'none'"
     if light:
-        return f"one bounce from the light, phase function {type(scene.medium.phase).__name__}"
+        shadows = f", shadows of {len(scene.occluders)} occluders" if scene.occluders else ""
+        return f"one bounce from the {type(scene.light).__name__}, phase function {type(scene.medium.phase).__name__}{shadows}"
     if ambient:
         return "constant in-scattered radiance: the phase function integrates to 1 and drops out"
-    return "the light has intensity 0" if scene.scattering == "single" else "the ambient radiance is 0"
+    return "the light is off" if scene.scattering == "single" else "the ambient radiance is 0"
 
 
 def _colour(scene: Scene) -> tuple[bool, str]:
-    values = [scene.ambient, scene.background, scene.light.intensity if scene.light else 0.0]
+    values = [scene.ambient, scene.background, strength(scene.light) if scene.light else 0.0]
     counts = {len(value) for value in values if isinstance(value, tuple)} | {scene.medium.channels}
     counts -= {None}
     return (True, f"{counts.pop()} channels") if counts else (False, "grey: one channel")

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
+from fogproof.scene.kinds import ByKind
 from fogproof.scene.lights import one_direction, one_point
 from fogproof.validate import number
 
@@ -45,6 +47,10 @@ class Disk:
 
 
 Occluder = Sphere | Disk
+OCCLUDERS: dict[str, type[Occluder]] = {"sphere": Sphere, "disk": Disk}
+"""The `kind` of each occluder in files and requests."""
+
+OccluderField = Annotated[Occluder, ByKind(OCCLUDERS)]
 
 
 def _radius(value: float) -> float:
