@@ -9,7 +9,7 @@ import numpy as np
 from fogproof.contracts import Draws
 from fogproof.errors import UnsupportedError
 from fogproof.estimators.equiangular import Equiangular
-from fogproof.estimators.free_path import HomogeneousFreePath
+from fogproof.estimators.free_path import FreePath
 from fogproof.estimators.grey import grey
 from fogproof.estimators.phase import phase_value
 from fogproof.scene import Medium, PointLight, Ray
@@ -74,6 +74,6 @@ class FreePathAirlight:
     def draw(self, rng: np.random.Generator, n: int) -> Draws:
         """Return n realisations of the airlight [W/(m^2 sr)]."""
         setting = _setting(self.medium, self.ray, self.light)
-        paths = HomogeneousFreePath(setting.sigma_t, float(self.ray.length)).sample(rng.random((n, 1)))
+        paths = FreePath(setting.sigma_t, float(self.ray.length)).sample(rng.random((n, 1)))
         value = setting.radiance_density(self.medium, paths.x + setting.a) / paths.pdf
         return Draws(np.where(paths.event == 1, 0.0, value), cost=np.ones(n))

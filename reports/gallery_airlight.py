@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fogproof.analytic import airlight_integral, ambient_fog, single_scattering, transmittance
-from fogproof.estimators import Equiangular, EquiangularAirlight, HomogeneousFreePath
+from fogproof.estimators import Equiangular, EquiangularAirlight, FreePath
 from fogproof.reports.pictures import EXPECTED, OBSERVED, THIRD
 from fogproof.scene import HenyeyGreenstein, Medium, PointLight, Ray
 
@@ -33,7 +33,7 @@ class SamplesAroundALight:
         share = part / part.sum()
         u = self.rng.random((self.samples, 1))
         equiangular = np.histogram(Equiangular(h, a, b).sample(u).x, edges)[0] / self.samples
-        path = np.histogram(HomogeneousFreePath(sigma_t).sample(u).x + a, edges)[0] / self.samples
+        path = np.histogram(FreePath(sigma_t).sample(u).x + a, edges)[0] / self.samples
         distance, width = edges - a, np.diff(edges)
         for value, colour, name in ((path, THIRD, "free-path samples"), (equiangular, OBSERVED, "equiangular samples")):
             axes.stairs(value / width, distance, fill=True, color=colour, alpha=0.4, label=name)

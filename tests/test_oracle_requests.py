@@ -11,7 +11,8 @@ import pytest
 
 from fogproof import HenyeyGreenstein, analytic
 from fogproof.checks import jsonable
-from fogproof.oracle import PROTOCOL, answer_text, quantities, schema
+from fogproof.oracle import PROTOCOL, answer_text, schema
+from fogproof.quantities import quantities
 
 ROOT = Path(__file__).resolve().parent.parent
 RAY = {"origin": [0, 0, -2], "direction": [0, 0, 1], "length": 5}
@@ -36,6 +37,14 @@ REQUESTS = [
     {"quantity": "single_scattering", "medium": FOG, "ray": RAY, "light": LAMP,
      "occluders": [{"kind": "sphere", "center": [0.5, 0.5, 0], "radius": 0.1}]},
     {"quantity": "radiance", "medium": {**FOG, "emission": 1}, "ray": RAY, "scattering": "single", "light": LAMP, "background": 2},
+    {"quantity": "transmittance_second_moment", "medium": VOXELS, "ray": RAY,
+     "tracking": "residual-ratio", "majorant": 2, "control": 1},
+    {"quantity": "ambient_fog_variance", "medium": FOG, "ray": RAY, "ambient": 1},
+    {"quantity": "air_cross_section", "wavelength": [4e-7, 5e-7]},
+    {"quantity": "air_optical_depth", "wavelength": 5e-7},
+    {"quantity": "plane_parallel_sky", "tau": [0.1, 0.3], "mu_sun": 0.5, "mu_view": 0.9, "azimuth": 0},
+    {"quantity": "sky_colour", "mu_sun": 0.5, "mu_view": [0.5, 0.9], "azimuth": 0},
+    {"quantity": "sun_colour", "air_mass": [1, 10]},
     {"quantity": "transmittance_variance", "medium": ATMOSPHERE, "ray": RAY, "tracking": "ratio", "majorant": 2},
     {"quantity": "transmittance_lookups", "medium": FOG, "ray": RAY, "tracking": "delta", "majorant": 2},
     {"quantity": "single_scattering_variance", "medium": FOG, "ray": RAY, "light": LAMP, "sampling": "equiangular"},
