@@ -6,16 +6,33 @@ exact binary64 numbers.
 
 from fogproof.analytic.airlight import airlight_integral
 from fogproof.analytic.ambient_fog import ambient_fog
+from fogproof.analytic.coefficients import Coefficients, coefficients
+from fogproof.analytic.emission import emitted_radiance
+from fogproof.analytic.free_path import free_path
+from fogproof.analytic.furnace import thermal_furnace, white_furnace
 from fogproof.analytic.phase_functions import phase_cdf, phase_pdf
 from fogproof.analytic.single_scattering import single_scattering
 from fogproof.analytic.transmittance import optical_thickness, transmittance
 
 __all__ = [
     "airlight_integral",
+from fogproof.analytic.radiance_by_ode import radiance_by_ode
+from fogproof.analytic.radiance_by_quadrature import radiance_by_quadrature
+from fogproof.analytic.transmittance import optical_thickness, transmittance
+
+__all__ = [
+    "Coefficients",
     "ambient_fog",
+    "coefficients",
+    "emitted_radiance",
+    "free_path",
     "optical_thickness",
     "phase_cdf",
     "phase_pdf",
     "single_scattering",
+    "radiance_by_ode",
+    "radiance_by_quadrature",
+    "thermal_furnace",
     "transmittance",
+    "white_furnace",
 ]

@@ -2,55 +2,92 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
-from fogproof.analytic.error_free import EPS, TINY, exp_minus, sum_times
+from fogproof.analytic.adaptive import procedural_thickness
+from fogproof.analytic.anisotropic_medium import anisotropic_thickness
+from fogproof.analytic.double_double import UNIT
+from fogproof.analytic.error_free import ELEMENTARY, EPS, TINY, exp_minus, sum_times
+from fogproof.analytic.exponential_medium import exponential_thickness
+from fogproof.analytic.linear_medium import linear_thickness
+from fogproof.analytic.opengl_fog import fog_thickness
+from fogproof.analytic.plane_crossings import cell_thickness
+from fogproof.analytic.thickness import Rays, Thickness, channels_of, rays_with_channels
 from fogproof.contracts import Reference
-from fogproof.errors import InvalidValueError
-from fogproof.scene import Medium, Ray
-from fogproof.validate import Channels, channel_count
+from fogproof.scene import (
+    AnisotropicMedium,
+    AnyMedium,
+    ExponentialMedium,
+    LinearMedium,
+    Medium,
+    OpenGLFog,
+    Procedural,
+    Ray,
+)
 
 SOURCE = "Bouguer 1729, Beer 1852; Chandrasekhar 1960, Radiative Transfer, section 7"
 
 
-def optical_thickness(medium: Medium, ray: Ray) -> Reference:
+def optical_thickness(medium: AnyMedium, ray: Ray) -> Reference:
     """Return tau = integral of sigma_t along the ray, dimensionless, shape R or R + (channels,).
 
-    An empty medium has tau = 0 on every ray, the infinite one included; otherwise an infinite ray has tau = inf.
-    Error: at most 1 EPS relative.
+    Positions are origin + t direction, with the direction as stored. An empty medium has tau = 0 on every ray, the
+    infinite one included.
+    Error: 1 EPS relative for a homogeneous medium; see the method named in the result for the others.
     """
-    tau, low = tau_pair(medium, ray, channels_of(medium))
-    with np.errstate(under="ignore"):
-        return Reference(tau + low, np.where(np.isinf(tau), 0.0, EPS * tau + 2 * TINY), "sigma_t s", SOURCE)
+    tau = thickness(medium, ray, channels_of(medium))
+    with np.errstate(under="ignore", invalid="ignore"):
+        value = tau.value + tau.low
+        return Reference(value, tau.error + np.where(np.isinf(value), 0.0, EPS * value + TINY), tau.method, tau.source)
 
 
-def transmittance(medium: Medium, ray: Ray) -> Reference:
+def transmittance(medium: AnyMedium, ray: Ray) -> Reference:
     """Return T = exp(-tau), dimensionless, shape R or R + (channels,).
 
-    Error: at most 5 EPS relative for every tau, because tau = (sigma_a + sigma_s) s is never rounded; where T
-    underflows the error is absolute, 2 TINY.
+    Error: at most 6 EPS relative for every tau where tau is known as a pair (homogeneous, linear, layers, nearest
+    voxels), because it is never rounded; else the error of tau more. Where T underflows it is absolute, 2 TINY.
     """
-    value, error = exp_minus(*tau_pair(medium, ray, channels_of(medium)))
-    return Reference(value, error, "exp(-tau), tau unrounded", SOURCE)
+    tau = thickness(medium, ray, channels_of(medium))
+    value, rounding, inherited = survival(tau)
+    return Reference(value, rounding + inherited, f"exp(-tau), {tau.method}", tau.source)
 
 
-def tau_pair(medium: Medium, ray: Ray, channels: int | None) -> tuple[np.ndarray, np.ndarray]:
-    """Return tau as (value, low), each of the full shape of a result with that many channels."""
-    if not isinstance(medium, Medium):
-        raise InvalidValueError("medium", "must be a Medium", medium)
-    if not isinstance(ray, Ray):
-        raise InvalidValueError("ray", "must be a Ray", ray)
-    length, shape = ray.length, ray.shape
-    if channels is not None:
-        length, shape = length[..., None], (*shape, channels)
-    tau, low = sum_times(medium.sigma_a, medium.sigma_s, length)
-    return np.broadcast_to(tau, shape), np.broadcast_to(low, shape)
+def survival(tau: Thickness) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return exp(-tau), the bound of its rounding error, and of the error it inherits from tau."""
+    value, rounding = exp_minus(tau.value, tau.low)
+    with np.errstate(under="ignore", over="ignore", invalid="ignore"):
+        inherited = np.where(tau.error > 0, (value + 2 * TINY) * np.expm1(tau.error), 0.0)
+        at_most = np.exp(-np.maximum(tau.value - tau.error, 0.0)) * (1 + ELEMENTARY) + 2 * TINY
+    return value, rounding, np.fmin(inherited, at_most)
 
 
-def channels_of(medium: Any, **values: Channels) -> int | None:
-    """Return how many channels the medium and the named values have together; None if all are grey."""
-    if not isinstance(medium, Medium):
-        raise InvalidValueError("medium", "must be a Medium", medium)
-    return channel_count(sigma_a=medium.sigma_a, sigma_s=medium.sigma_s, emission=medium.emission, **values)
+def thickness(medium: AnyMedium, ray: Ray, channels: int | None) -> Thickness:
+    """Return tau in the full shape of a result with that many channels."""
+    rays = rays_with_channels(ray, channels)
+    match medium:
+        case Medium():
+            tau = _homogeneous(medium, rays)
+        case LinearMedium():
+            tau = linear_thickness(medium, rays)
+        case ExponentialMedium():
+            tau = exponential_thickness(medium, rays)
+        case AnisotropicMedium():
+            tau = anisotropic_thickness(medium, rays)
+        case OpenGLFog():
+            tau = fog_thickness(medium, rays)
+        case Procedural():
+            tau = procedural_thickness(medium, ray)
+        case _:
+            tau = cell_thickness(medium, ray)
+
+    def shaped(x: np.ndarray) -> np.ndarray:
+        return np.broadcast_to(x if x.ndim == len(rays.shape) else x[..., None], rays.shape)
+
+    return Thickness(shaped(tau.value), shaped(tau.low), shaped(tau.error), tau.method, tau.source)
+
+
+def _homogeneous(medium: Medium, rays: Rays) -> Thickness:
+    value, low = sum_times(medium.sigma_a, medium.sigma_s, rays.length)
+    with np.errstate(under="ignore", invalid="ignore"):
+        error = np.where(np.isinf(value), 0.0, UNIT * value + 2 * TINY)
+    return Thickness(value, low, error, "tau = sigma_t s, unrounded", SOURCE)

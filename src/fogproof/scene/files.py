@@ -67,7 +67,7 @@ def _with_infinities(value: Any) -> Any:
 
 def _complaint(error: Any, data: Any, origin: str) -> InvalidInputError | InvalidValueError:
     """Turn pydantic's report into one sentence; the first fault is told, the others are counted."""
-    faults = {_place(fault["loc"], data): fault for fault in reversed(error.errors())}
+    faults = {_place(fault, data): fault for fault in reversed(error.errors())}
     place, fault = list(faults.items())[-1]
     more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
     cause = fault.get("ctx", {}).get("error")
@@ -87,14 +87,15 @@ def _complaint(error: Any, data: Any, origin: str) -> InvalidInputError | Invali
     return InvalidInputError(f"{origin}: {place} {reason}{more}", place)
 
 
-def _place(loc: tuple[str | int, ...], data: Any) -> str:
+def _place(fault: Any, data: Any) -> str:
     """Return the path of a fault as the user wrote it, without the names of types that pydantic puts in between."""
     parts: list[str] = []
-    for step, part in enumerate(loc):
+    absent_key = fault["type"].startswith("missing")
+    for step, part in enumerate(fault["loc"]):
         present = part in data if isinstance(data, dict) else isinstance(data, list) and part in range(len(data))
         if present:
             data = data[part]
-        elif step < len(loc) - 1 or not isinstance(data, dict) or part == data.get("kind"):
+        elif not (absent_key and step == len(fault["loc"]) - 1):
             continue
         parts.append(str(part))
     return ".".join(parts)

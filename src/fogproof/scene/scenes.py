@@ -7,7 +7,7 @@ from typing import Literal, get_args
 
 from fogproof.errors import InvalidValueError
 from fogproof.scene.lights import PointLight
-from fogproof.scene.media import Medium
+from fogproof.scene.media import AnyMedium, AnyMediumField
 from fogproof.scene.rays import Ray
 from fogproof.validate import Channels, channel_count, nonnegative_channels
 
@@ -25,7 +25,7 @@ class Scene:
     background  radiance of the surface at the ray's end [W/(m^2 sr)]
     """
 
-    medium: Medium
+    medium: AnyMediumField
     ray: Ray
     scattering: Scattering = "none"
     light: PointLight | None = None
@@ -44,10 +44,10 @@ class Scene:
                 None,
                 "add a [light] table, or set scattering = 'none'",
             )
+        if not isinstance(self.medium, AnyMedium):
+            raise InvalidValueError("medium", "must be a medium", self.medium, "for example Medium(sigma_a, sigma_s)")
         channel_count(
-            sigma_a=self.medium.sigma_a,
-            sigma_s=self.medium.sigma_s,
-            emission=self.medium.emission,
+            medium=(0.0,) * self.medium.channels if self.medium.channels else 0.0,
             intensity=self.light.intensity if self.light else 0.0,
             ambient=self.ambient,
             background=self.background,
