@@ -11,17 +11,14 @@ from fogproof.analytic.emission import emitted_radiance
 from fogproof.analytic.free_path import free_path
 from fogproof.analytic.furnace import thermal_furnace, white_furnace
 from fogproof.analytic.phase_functions import phase_cdf, phase_pdf
+from fogproof.analytic.radiance_by_ode import radiance_by_ode
+from fogproof.analytic.radiance_by_quadrature import radiance_by_quadrature
 from fogproof.analytic.single_scattering import single_scattering
 from fogproof.analytic.transmittance import optical_thickness, transmittance
 
 __all__ = [
-    "airlight_integral",
-from fogproof.analytic.radiance_by_ode import radiance_by_ode
-from fogproof.analytic.radiance_by_quadrature import radiance_by_quadrature
-from fogproof.analytic.transmittance import optical_thickness, transmittance
-
-__all__ = [
     "Coefficients",
+    "airlight_integral",
     "ambient_fog",
     "coefficients",
     "emitted_radiance",
@@ -29,9 +26,9 @@ __all__ = [
     "optical_thickness",
     "phase_cdf",
     "phase_pdf",
-    "single_scattering",
     "radiance_by_ode",
     "radiance_by_quadrature",
+    "single_scattering",
     "thermal_furnace",
     "transmittance",
     "white_furnace",
