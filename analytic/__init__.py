@@ -36,15 +36,6 @@ __all__ = [
     "airlight_integral",
     "airlight_second_moment",
     "airlight_table",
-from fogproof.analytic.phase_functions import phase_cdf, phase_pdf
-from fogproof.analytic.radiance_by_ode import radiance_by_ode
-from fogproof.analytic.radiance_by_quadrature import radiance_by_quadrature
-from fogproof.analytic.single_scattering import single_scattering
-from fogproof.analytic.transmittance import optical_thickness, transmittance
-
-__all__ = [
-    "Coefficients",
-    "airlight_integral",
     "ambient_fog",
     "ambient_fog_variance",
     "coefficients",
@@ -66,9 +57,6 @@ __all__ = [
     "single_scattering_variance",
     "sky_colour",
     "sun_colour",
-    "radiance_by_ode",
-    "radiance_by_quadrature",
-    "single_scattering",
     "thermal_furnace",
     "transmittance",
     "transmittance_lookups",
