@@ -9,7 +9,7 @@ import numpy as np
 from fogproof.contracts import Draws
 from fogproof.errors import UnsupportedError
 from fogproof.estimators.extinction import along
-from fogproof.estimators.free_path import FreePath, SpectralFreePath, TruncatedFreePath
+from fogproof.estimators.free_path import FreePath, HomogeneousSpectralFreePath, TruncatedFreePath
 from fogproof.estimators.grey import grey
 from fogproof.scene import AnyMedium, Medium, Ray
 from fogproof.validate import Channels
@@ -59,8 +59,8 @@ class AnalogFog:
 
 
 @dataclass(frozen=True, eq=False)
-class SpectralFog:
-    """The same in several channels: one free path serves all, see `SpectralFreePath`; the medium is homogeneous."""
+class HomogeneousSpectralFog:
+    """The same in several channels: one free path serves all, see `HomogeneousSpectralFreePath`; the medium is homogeneous."""
 
     medium: Medium
     ray: Ray
@@ -71,7 +71,7 @@ class SpectralFog:
         """Return n realisations (n, channels) of the radiance, each at the cost of one sampled path."""
         sigma_t = np.asarray(self.medium.sigma_t)
         source = np.multiply(self.medium.sigma_s, self.ambient) + np.multiply(self.medium.sigma_a, self.medium.emission)
-        paths = SpectralFreePath(tuple(sigma_t.tolist()), float(self.ray.length)).sample(rng.random((n, 2)))
+        paths = HomogeneousSpectralFreePath(tuple(sigma_t.tolist()), float(self.ray.length)).sample(rng.random((n, 2)))
         assert paths.weight is not None
         assert paths.event is not None
         seen = np.where(paths.event[:, None] == 1, self.background, source)

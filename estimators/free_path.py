@@ -117,7 +117,7 @@ class TruncatedFreePath:
 
 
 @dataclass(frozen=True)
-class SpectralFreePath:
+class HomogeneousSpectralFreePath:
     """Free paths that serve several channels: one channel is drawn, and the distance with its extinction.
 
     sigma_t  extinction coefficient of each channel [1/m]

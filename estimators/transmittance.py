@@ -8,7 +8,7 @@ import numpy as np
 
 from fogproof.contracts import Draws
 from fogproof.estimators.extinction import Extinction
-from fogproof.estimators.free_path import FreePath, SpectralFreePath
+from fogproof.estimators.free_path import FreePath, HomogeneousSpectralFreePath
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class SpectralTransmittance:
 
     def draw(self, rng: np.random.Generator, n: int) -> Draws:
         """Return n realisations (n, channels), each at the cost of one sampled path."""
-        paths = SpectralFreePath(self.sigma_t, self.length).sample(rng.random((n, 2)))
+        paths = HomogeneousSpectralFreePath(self.sigma_t, self.length).sample(rng.random((n, 2)))
         assert paths.weight is not None
         assert paths.event is not None
         return Draws(paths.weight * paths.event[:, None], cost=np.ones(n))

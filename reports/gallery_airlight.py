@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fogproof.analytic import airlight_integral, ambient_fog, single_scattering, transmittance
-from fogproof.estimators import Equiangular, EquiangularAirlight, FreePath
+from fogproof.estimators import Equiangular, Airlight, FreePath
 from fogproof.reports.pictures import EXPECTED, OBSERVED, THIRD
 from fogproof.scene import HenyeyGreenstein, Medium, PointLight, Ray
 
@@ -67,9 +67,7 @@ class Glow:
         exact = image.copy()
         for i, j in np.ndindex(self.height, self.width // 2):
             ray = Ray([0, 0, 0], view[i, j + self.width // 2])
-            image[i, j + self.width // 2] = (
-                EquiangularAirlight(medium, ray, light).draw(self.rng, self.samples).value.mean()
-            )
+            image[i, j + self.width // 2] = Airlight(medium, ray, light).draw(self.rng, self.samples).value.mean()
         axes = figure.add_axes((0.02, 0.08, 0.80, 0.88))
         shown = axes.imshow(image, norm=LogNorm(exact.min(), np.quantile(exact, 0.999)), cmap="cividis", aspect="auto")
         axes.set(xticks=[], yticks=[])

@@ -16,8 +16,8 @@ from fogproof.estimators import (
     Constant,
     Exponential,
     FreePath,
+    HomogeneousSpectralFreePath,
     Linear,
-    SpectralFreePath,
     TruncatedFreePath,
     Vanishing,
     along,
@@ -104,7 +104,7 @@ def test_edges_lead_to_points_of_the_domain(medium, surface):
 @given(st.lists(st.one_of(st.just(0.0), moderate), min_size=1, max_size=4), st.one_of(st.just(math.inf), moderate))
 @settings(deadline=None)
 def test_channels_share_one_density(sigma_t, surface):
-    path = SpectralFreePath(tuple(sigma_t), surface)
+    path = HomogeneousSpectralFreePath(tuple(sigma_t), surface)
     u = np.random.default_rng(7).random((200, 2))
     draw = path.sample(u)
     alone = [FreePath(s, surface) for s in sigma_t]
@@ -134,7 +134,7 @@ def test_bad_extinctions_are_refused(bad):
     with pytest.raises(InvalidValueError):
         FreePath(bad)
     with pytest.raises(InvalidValueError):
-        SpectralFreePath((1.0, bad))
+        HomogeneousSpectralFreePath((1.0, bad))
 
 
 @pytest.mark.parametrize("surface", [0.0, -1.0, math.nan])

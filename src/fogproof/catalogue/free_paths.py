@@ -10,7 +10,7 @@ import numpy as np
 from fogproof.analytic import coefficients, transmittance
 from fogproof.catalogue.cases import Altered, SamplerCase, Twin
 from fogproof.contracts import Draw, Reference
-from fogproof.estimators import Constant, FreePath, Linear, SpectralFreePath, TruncatedFreePath, along
+from fogproof.estimators import Constant, FreePath, HomogeneousSpectralFreePath, Linear, TruncatedFreePath, along
 from fogproof.scene import AnyMedium, ExponentialMedium, LinearMedium, Medium, OpenGLFog, Ray
 
 _START = ((0.0, 0.0, 0.0), (0.0, 0.0, 1.0))
@@ -129,8 +129,8 @@ def _spectral(
 ) -> SamplerCase:
     medium = Medium(sigma_t, (0.0,) * len(sigma_t))
 
-    def make() -> SpectralFreePath:
-        return SpectralFreePath(sigma_t, surface)
+    def make() -> HomogeneousSpectralFreePath:
+        return HomogeneousSpectralFreePath(sigma_t, surface)
 
     source = "Veach & Guibas 1995, balance heuristic of one sample"
     return _case(f"spectral/{name}", title, medium, make, error, sample, pdf, source=source)
@@ -208,7 +208,7 @@ def _not_renormalised(sampler: TruncatedFreePath, x: np.ndarray) -> np.ndarray:
     return FreePath(sampler.extinction).pdf(x)
 
 
-def _chosen_channel(sampler: SpectralFreePath, u: np.ndarray) -> Draw:
+def _chosen_channel(sampler: HomogeneousSpectralFreePath, u: np.ndarray) -> Draw:
     """Everything is divided by the density of the channel that was drawn."""
     draw = sampler.sample(u)
     sigma = np.array(sampler.sigma_t)[(u[:, 0] * len(sampler.sigma_t)).astype(int)]
@@ -216,13 +216,13 @@ def _chosen_channel(sampler: SpectralFreePath, u: np.ndarray) -> Draw:
     return draw._replace(pdf=pdf, weight=sampler.eval(draw.x) / pdf[:, None])
 
 
-def _channel_zero(sampler: SpectralFreePath, u: np.ndarray) -> Draw:
+def _channel_zero(sampler: HomogeneousSpectralFreePath, u: np.ndarray) -> Draw:
     draw = sampler.sample(u)
     assert draw.weight is not None
     return draw._replace(weight=np.repeat(draw.weight[:, :1], draw.weight.shape[1], axis=1))
 
 
-def _mean_extinction(sampler: SpectralFreePath, u: np.ndarray) -> np.ndarray:
+def _mean_extinction(sampler: HomogeneousSpectralFreePath, u: np.ndarray) -> np.ndarray:
     return FreePath(float(np.mean(sampler.sigma_t)), sampler.surface).sample(u[:, 1:]).x
 
 

@@ -20,7 +20,7 @@ from fogproof.estimators import (
     AnalogFog,
     AnalogTransmittance,
     CertainCollisionFog,
-    SpectralFog,
+    HomogeneousSpectralFog,
     SpectralTransmittance,
     UniformEmission,
     along,
@@ -110,7 +110,7 @@ def _chosen_channel_only(sigma_t: tuple[float, ...], length: float) -> Drawn:
     return Drawn(draw)
 
 
-def _every_channel_is_the_first(fog: SpectralFog) -> Drawn:
+def _every_channel_is_the_first(fog: HomogeneousSpectralFog) -> Drawn:
     def draw(rng: np.random.Generator, n: int) -> np.ndarray:
         value = np.asarray(fog.draw(rng, n).value)
         return np.repeat(value[:, :1], value.shape[1], axis=1)
@@ -357,13 +357,15 @@ def cases() -> list[EstimatorCase]:
         EstimatorCase(
             name="fog/spectral",
             title="Fog of three channels that emits, by one free path",
-            make=lambda: SpectralFog(milk, _to(0.8), (0.3, 0.6, 0.9), (1.0, 0.2, 0.5)),
+            make=lambda: HomogeneousSpectralFog(milk, _to(0.8), (0.3, 0.6, 0.9), (1.0, 0.2, 0.5)),
             reference=lambda: ambient_fog(milk, _to(0.8), (0.3, 0.6, 0.9), (1.0, 0.2, 0.5)),
             oracle="ambient_fog",
             source=_EQUATION,
             twin=Twin(
                 "all channels are computed from the first",
-                lambda: _every_channel_is_the_first(SpectralFog(milk, _to(0.8), (0.3, 0.6, 0.9), (1.0, 0.2, 0.5))),
+                lambda: _every_channel_is_the_first(
+                    HomogeneousSpectralFog(milk, _to(0.8), (0.3, 0.6, 0.9), (1.0, 0.2, 0.5))
+                ),
             ),
         ),
         _emission_case(
