@@ -177,17 +177,22 @@ def _sums(
     k, w0, wt0, low, high, _, _ = window
     panel = PANEL / (1 + (phase.degree + (gain.degree if gain else 0)) / 8)
     fall = k * np.expm1(high)
-    panels = np.maximum(np.ceil(np.maximum((high - low) / panel, fall / DEPTH)), 1).astype(np.intp)
-    width = (high - low) / panels
-    first = np.cumsum(panels) - panels
-    total = int(panels.sum())
-    owner = np.repeat(np.arange(len(k)), panels)
-    left = low[owner] + width[owner] * (np.arange(total) - first[owner])
+    below = np.ceil(-low / panel).astype(np.intp)
+    above = np.ceil(np.maximum(high / panel, fall / DEPTH)).astype(np.intp)
+    above = np.maximum(above, below == 0)
+    first = np.cumsum(below + above) - below - above
+    total = int((below + above).sum())
+    owner = np.repeat(np.arange(len(k)), below + above)
+    # Edges count from the anchor, where the integrand is large: an edge is off by half an EPS of its distance from there,
+    # and not of the length of the whole window.
+    step = np.arange(total) - (first + below)[owner]
+    width = np.where(step < 0, (-low / np.maximum(below, 1))[owner], (high / np.maximum(above, 1))[owner])
+    left = step * width
     parts = np.zeros((3, total))
     for i in range(0, total, BLOCK):
         block = slice(i, i + BLOCK)
         own = owner[block]
-        u = NODES[:, None] * width[own] + left[block]
+        u = NODES[:, None] * width[block] + left[block]
         grow = np.exp(u)
         w, wt = w0[own] * grow, wt0[own] / grow
         f = np.exp(np.expm1(u) * -k[own]) / (w + wt)
@@ -202,7 +207,8 @@ def _sums(
                 parts[2, block] = WEIGHTS @ (f * noise)
             f *= factor
         parts[0, block] = WEIGHTS @ f
+    parts *= 2 * width
     if total > len(k):
         parts = np.add.reduceat(parts, first, axis=1)
-    sums, plain, noise = 2 * width * parts
+    sums, plain, noise = parts
     return sums, plain, noise

@@ -97,7 +97,7 @@ def _ways_back(shape: Shape, ray: Ray, light: DirectionalLight) -> tuple[np.ndar
     """
     normals, offsets = faces(shape)
     facing = -(normals @ np.array(light.direction))
-    entered = facing > 0
+    entered = facing > 1e-150  # a face edge-on is infinitely far
     normals, offsets, facing = normals[entered], offsets[entered], facing[entered]
     origin, d = ray.origin.reshape(-1, 3), ray.direction.reshape(-1, 3)
     size = np.abs(origin).sum(axis=1)[:, None] + np.abs(offsets)
@@ -137,7 +137,9 @@ def _polyhedron(
     reach = np.where(length[:, None] < np.inf, length[:, None] * mean, 1 / (sigma * np.abs(growth)[:, None]))
     value = np.exp(-sigma * path[:, None]) * reach
     uncertain = 16 * EPS * (size + np.abs(slope * nearer) + np.abs(nearer))
-    return value, value * (np.expm1(sigma * uncertain[:, None]) + 16 * EPS) + TINY
+    # The way may be shorter by that, which is a lot only where the light grazes a face.
+    at_most = np.exp(-sigma * np.maximum(path - uncertain, 0.0)[:, None]) * reach
+    return value, (at_most - value) + (np.minimum(sigma * uncertain[:, None], 1.0) + 16 * EPS) * value + TINY
 
 
 def _ball(
@@ -163,9 +165,11 @@ def _ball(
     middle = np.where(bend > 0, -np.sum(Q0 * Q1, axis=1) / bend, 0.0)
     nearest = Q0 + middle[:, None] * Q1
     radius = np.sqrt(np.maximum(R * R - np.sum(nearest * nearest, axis=1), 0.0) / bend)
-    bent = radius < 4 * R  # else the root is nearly straight over the ball, and smooth
-    low = np.where(bent, np.arcsin(np.clip((start - middle) / radius, -1, 1)), start)
-    high = np.where(bent, np.arcsin(np.clip((end - middle) / radius, -1, 1)), end)
+    # For a larger radius the root is nearly straight over the ball, and smooth; for a tiny one the ray just touches it.
+    bent = (radius < 4 * R) & (radius > EPS * R)
+    first, last = (np.clip((t - middle) / np.where(bent, radius, 1.0), -1, 1) for t in (start, end))
+    low, high = np.where(bent, np.arcsin(first), start), np.where(bent, np.arcsin(last), end)
+    lost = np.where(bent, np.maximum((end - start) - radius * (last - first), 0.0), 0.0)  # at the margins
     panels = np.ceil(2 + sigma.max() * (end - start) / 4).astype(int)
     value, error = np.zeros((2, len(owner), len(sigma)))
     for i in range(len(owner)):
@@ -182,5 +186,5 @@ def _ball(
         blur = 16 * EPS * (np.abs(origin[i]).max() + R) * (2 + np.minimum(R / half, EPS**-0.5))
         f = np.exp(-sigma[:, None, None] * path) * weights
         value[i] = f.sum(axis=(1, 2))
-        error[i] = (f * np.expm1(sigma[:, None, None] * blur)).sum(axis=(1, 2)) + 64 * EPS * value[i]
+        error[i] = (f * np.expm1(sigma[:, None, None] * blur)).sum(axis=(1, 2)) + 64 * EPS * value[i] + lost[i]
     return value, error + TINY

@@ -56,7 +56,10 @@ def lit_by_cone(where: Placement, light: SpotLight, ray: np.ndarray, t: np.ndarr
     if light.half_angle == math.pi:
         return np.ones(t.shape)
     A, B = axis_products(where, light)
-    cosine, delta = (A[ray] + B[ray] * t) / np.hypot(t, where.h[ray]), margin(where)[ray]
+    r = np.hypot(t, where.h[ray])
+    # A ray through the light itself has no edges; the angle is uncertain close to the light only.
+    cosine = (A[ray] + B[ray] * t) / r
+    delta = np.where(where.h[ray] > 0, margin(where)[ray], 16 * EPS + 2 * where.uncertainty[ray] / r)
     outer, inner = _cosines(light)
     if inner > outer:
         return (cosine >= outer - delta).astype(float)
@@ -93,13 +96,15 @@ def intensity(light: SpotLight, cosine: np.ndarray) -> np.ndarray:
     return value
 
 
+def intensity_at(where: Placement, light: SpotLight, ray: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the intensity relative to the axis, and its error, at lit places t (p, nodes) of rays (p,)."""
+    A, B = axis_products(where, light)
+    cosine, delta = (A[ray, None] + B[ray, None] * t) / np.hypot(t, where.h[ray, None]), margin(where)[ray, None]
+    below, above = intensity(light, cosine - delta), intensity(light, cosine + delta)
+    return intensity(light, cosine), above - below
+
+
 def _cosines(light: SpotLight) -> tuple[float, float]:
     """Return the cosines of the edge of the cone and of its full part; equal for a hard edge."""
     start = light.half_angle if light.falloff_start is None else light.falloff_start
     return math.cos(light.half_angle), math.cos(start)
-
-
-def intensity_at(where: Placement, light: SpotLight, ray: np.ndarray, t: np.ndarray) -> np.ndarray:
-    """Return the intensity relative to the axis inside the cone, at places t (p, nodes) of rays (p,)."""
-    A, B = axis_products(where, light)
-    return intensity(light, (A[ray, None] + B[ray, None] * t) / np.hypot(t, where.h[ray, None]))

@@ -84,8 +84,10 @@ def _from_point(
             R2 * N1 * N1 - _dot(V1, V1), R2 * N0 * N1 - _dot(V0, V1), R2 * N0 * N0 - _dot(V0, V0), N1 * side, N0 * side
         )
         low, high = _beyond(low, high, N0 * side - abs(to_plane) + margin, N1 * side)
-        if to_plane == 0:
-            low, high = np.full_like(low, np.nan), np.full_like(high, np.nan)
+        # A light in the disk itself may shine to either side, or to none; one beside it in its plane casts no shadow.
+        inside, beside = abs(to_plane) <= margin, np.sqrt(max(c @ c - to_plane * to_plane, 0.0))
+        low = np.where(inside, np.where(beside <= R, -np.inf, np.nan), np.where(to_plane == 0, np.nan, low))
+        high = np.where(inside, np.where(beside <= R, np.inf, np.nan), np.where(to_plane == 0, np.nan, high))
     none = ~((low < high) & (R > 0))
     return np.where(none, np.nan, low + ahead), np.where(none, np.nan, high + ahead)
 

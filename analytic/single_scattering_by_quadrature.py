@@ -191,6 +191,7 @@ def _integrand(
 
     def look(which: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         i = own[which]
+        uncertain = np.zeros((1, 1))  # of the intensity, where that varies with the angle
         d = ray.direction[i][:, None, :]
         if where is None or isinstance(light, DirectionalLight):
             distance, jacobian = pieces.start[which, None] + u, np.ones(u.shape)
@@ -205,7 +206,9 @@ def _integrand(
             x = ray.origin[i][:, None, :] + distance[..., None] * d
             jacobian, mu = 1 / r, (wt - w) / (w + wt)
             if isinstance(light, SpotLight):
-                jacobian = jacobian * intensity_at(where, light, i, t)
+                aim, blur = intensity_at(where, light, i, t)
+                uncertain = (jacobian * blur).reshape(-1, 1)
+                jacobian = jacobian * aim
             back = np.array(light.position) - x
             length = np.linalg.norm(back, axis=-1)
             back, way = back / length[..., None], length
@@ -217,6 +220,7 @@ def _integrand(
         source, source_error = scattering(flat, ahead, mu)
         arrives = np.exp(-near - far) * jacobian.reshape(-1, 1)
         value, error = source * arrives, source_error * arrives
+        error = error + source * np.exp(-near - far) * uncertain
         error = error + value * np.expm1(near_error + far_error + 32 * EPS)
         return value.reshape(*u.shape, channels), error.reshape(*u.shape, channels)
 
