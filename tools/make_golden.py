@@ -110,6 +110,7 @@ def enclosure(request: dict[str, Any]) -> Ball:
     name = request["quantity"]
     given = {key: value for key, value in request.items() if key != "quantity"}
     arguments = read_fields(quantities()[name].arguments, given, "request")
+    arguments.pop("rigorous", None)  # what follows is nothing else
     ray = arguments.get("ray")
     if ray is not None and ray.direction.tolist() != request["ray"]["direction"]:
         raise ValueError(f"the direction {request['ray']['direction']} is not a unit vector to the last bit")
