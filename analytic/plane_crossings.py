@@ -11,7 +11,8 @@ A ray that runs inside a plane between two cells sees the upper one; inside the 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from fractions import Fraction
 from itertools import product
 from typing import NamedTuple
 
@@ -133,7 +134,13 @@ def segments(medium: CellMedium, ray: Ray) -> Iterator[tuple[slice, Segments]]:
 
 def _axes(medium: CellMedium, origin: np.ndarray, direction: np.ndarray) -> list[Axis]:
     if isinstance(medium, PiecewiseConstantMedium):
-        return [Axis(dd.dot(medium.axis, origin), dd.dot(medium.axis, direction), medium.boundaries)]
+        normal, places = [Fraction(x) for x in dd.flushed(medium.axis)], dd.flushed(origin)
+        layers = Axis(dd.dot(medium.axis, origin), dd.dot(medium.axis, direction), medium.boundaries)
+
+        def height(ray: int) -> Fraction:
+            return sum((a * Fraction(x) for a, x in zip(normal, places[ray], strict=True)), Fraction(0))
+
+        return [_settled(layers, height)]
     origin, direction = dd.flushed(origin), dd.flushed(direction)
     axes = []
     for i, n in enumerate(medium.sigma_t.shape[:3]):
@@ -141,8 +148,30 @@ def _axes(medium: CellMedium, origin: np.ndarray, direction: np.ndarray) -> list
         alpha = dd.add(dd.pair(origin[:, i]), dd.pair(-medium.lower[i]))
         planes = np.concatenate([[0.0], np.arange(n) + 0.5, [n]]) if is_trilinear(medium) else np.arange(n + 1.0)
         per_metre = dd.divide(dd.pair(float(n)), size)
-        axes.append(Axis(dd.times(alpha, per_metre), dd.times(dd.pair(direction[:, i]), per_metre), planes))
+        axis = Axis(dd.times(alpha, per_metre), dd.times(dd.pair(direction[:, i]), per_metre), planes)
+        axes.append(_settled(axis, _coordinate(origin[:, i], medium.lower[i], medium.upper[i], n)))
     return axes
+
+
+def _coordinate(places: np.ndarray, lower: float, upper: float, n: int) -> Callable[[int], Fraction]:
+    """Return the coordinate in voxels of the ray with a given number, as an exact fraction."""
+    return lambda ray: (Fraction(places[ray]) - Fraction(lower)) * n / (Fraction(upper) - Fraction(lower))
+
+
+def _settled(axis: Axis, exactly: Callable[[int], Fraction]) -> Axis:
+    """Return the axis with alpha on the right side of a plane that a ray runs along, which pairs may be too short for.
+
+    exactly  the coordinate of a ray in exact arithmetic, for the few that need it
+    """
+    value, low = (np.array(x) for x in axis.alpha)
+    along = np.flatnonzero(axis.beta[0] == 0)
+    planes = axis.planes[np.isfinite(axis.planes)]
+    off = np.abs((value[along, None] - planes) + low[along, None])
+    near = off <= UNIT * (np.abs(planes) + np.abs(value[along, None]))
+    for row in np.flatnonzero(near.any(axis=-1)):
+        ray, plane = int(along[row]), planes[near[row]][0]
+        value[ray], low[ray] = plane, float(exactly(ray) - Fraction(plane))
+    return axis._replace(alpha=(value, low))
 
 
 def _sorted(axes: list[Axis], length: np.ndarray) -> Segments:

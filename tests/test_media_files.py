@@ -191,3 +191,13 @@ def test_a_scene_counts_the_channels_of_its_medium():
     medium = LinearMedium((1.0, 2.0), (0, 0, 1))
     with pytest.raises(InvalidValueError, match="channels"):
         Scene(medium=medium, ray=RAY, scattering="single", light=PointLight((0, 0, 0), (1.0, 2.0, 3.0)))
+
+
+def test_a_ray_made_of_a_ray_has_the_same_direction():
+    """Normalised twice it would differ in the last bit, and every exact answer with it."""
+    w = np.random.default_rng(5).normal(size=(1000, 3))
+    once = Ray((0, 0, 0), w / np.linalg.norm(w, axis=-1, keepdims=True)).direction
+    single = Ray((0, 0, 0), once.astype(np.float32)).direction
+    assert np.abs(np.linalg.norm(single, axis=-1) - 1).max() < 1e-15
+    for direction in (once, single):
+        assert np.array_equal(Ray((0, 0, 0), direction).direction, direction)

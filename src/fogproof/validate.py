@@ -83,12 +83,14 @@ def points(name: str, value: Any) -> np.ndarray:
 def unit_vectors(name: str, value: Any) -> np.ndarray:
     """Return read-only (..., 3) unit vectors.
 
-    A length off by less than 1e-6 (a vector normalised in single precision) is normalised again; more is an error.
+    A length off by less than 1e-6 (a vector normalised in single precision) is normalised again; more is an error. One
+    that is off by rounding alone, 4 eps, stays as it is: to normalise twice would move it.
     """
     array = points(name, value)
     length = np.sqrt(np.sum(array * array, axis=-1))
     require(name, length, np.abs(length - 1) < 1e-6, "must have unit length", "divide it by its length")
-    array = np.where(length[..., None] == 1, array, array / length[..., None])
+    rounded = np.abs(length[..., None] - 1) <= 4 * np.finfo(np.float64).eps
+    array = np.where(rounded, array, array / length[..., None])
     array.flags.writeable = False
     return array
 
