@@ -111,7 +111,7 @@ def _draw(x, **more):
 WRONG = {
     "pdf off by 1e-6": ("interval", {"pdf": lambda x: np.full(len(x), (1 + 1e-6) / 3)}, "normalisation"),
     "pdf of the wrong measure": ("sphere", {"pdf": lambda x: np.full(len(x), 0.5)}, "normalisation"),
-    "uniform in radius": ("disk", {"sample": lambda u: disk(u) * np.sqrt(u[:, :1])}, "distribution of r^2"),
+    "uniform in radius": ("disk", {"sample": lambda u: disk(u) * np.sqrt(u[:, :1])}, "distribution of r"),
     "part of the circle": ("sphere", {"sample": lambda u: sphere(u * [1, 0.95])}, "distribution of phi"),
     "sampled where the pdf is 0": (
         "interval", {"pdf": lambda x: np.where(x > 4.9, 0, 1 / 2.9)}, "positive pdf"),
@@ -120,14 +120,14 @@ WRONG = {
     "stuck": ("interval", {"sample": lambda u: np.full(len(u), 3.0)}, "distribution"),
     "a loaded die": ("die", {"sample": lambda u: np.floor(6 * u[:, 0] ** 1.1)}, "distribution"),
     "infinite at u = 0": ("exponential", {"sample": lambda u: 1 - np.log(u[:, 0]) / 3}, "edge uniforms"),
-    "atom too heavy": ("atom at infinity", {"atoms": {np.inf: 0.26}}, "atom"),
+    "atom too heavy": ("atom at infinity", {"atoms": {np.inf: 0.27}}, "atom"),
     "undeclared atom": ("atom at infinity", {"atoms": {}}, "domain"),
     "returned pdf": ("interval", {"sample": lambda u: _draw(2 + 3 * u[:, 0], pdf=np.full(len(u), 0.3334))}, "returned pdf"),
     "weight": ("weights", {"sample": lambda u: _draw(u[:, 0], weight=0.601 * u[:, 0])}, "weight"),
     "albedo": ("weights", {"albedo": 0.31}, "albedo"),
     "cdf": ("square, skewed", {"cdf": lambda x: x}, "chi-square, joint"),
     "given up": (
-        "interval", {"sample": lambda u: _draw(2 + 3 * u[:, 0], valid=u[:, 0] > 0.05)}, "chi-square, coarse"),
+        "interval", {"sample": lambda u: _draw(2 + 3 * u[:, 0], valid=u[:, 0] > 0.05)}, "continuous part"),
 }  # fmt: skip
 
 
