@@ -12,6 +12,7 @@ from fogproof.analytic.colour import sky_colour, sun_colour
 from fogproof.analytic.emission import emitted_radiance
 from fogproof.analytic.free_path import free_path
 from fogproof.analytic.furnace import thermal_furnace, white_furnace
+from fogproof.analytic.golden import Golden, golden_values
 from fogproof.analytic.phase_functions import phase_cdf, phase_mean_cosine, phase_pdf, phase_quantile
 from fogproof.analytic.radiance import radiance
 from fogproof.analytic.radiance_by_ode import radiance_by_ode
@@ -31,6 +32,7 @@ from fogproof.analytic.varying_phase import phase_pdf_at
 
 __all__ = [
     "Coefficients",
+    "Golden",
     "air_cross_section",
     "air_optical_depth",
     "airlight_integral",
@@ -41,6 +43,7 @@ __all__ = [
     "coefficients",
     "emitted_radiance",
     "free_path",
+    "golden_values",
     "optical_thickness",
     "phase_cdf",
     "phase_mean_cosine",

@@ -10,7 +10,7 @@ from fogproof.analytic.compositing import composite
 from fogproof.analytic.error_free import EPS, TINY
 from fogproof.analytic.plane_crossings import is_trilinear
 from fogproof.analytic.radiance_by_quadrature import radiance_by_quadrature
-from fogproof.analytic.rigorous import rigorous_radiance
+from fogproof.analytic.rigorous import proven_radiance
 from fogproof.analytic.thickness import channels_of
 from fogproof.analytic.transmittance import survival, thickness
 from fogproof.contracts import Reference
@@ -41,7 +41,7 @@ def ambient_fog(
     background = nonnegative_channels("background", background, "W/(m^2 sr)")
     channels = channels_of(medium, ambient=ambient, background=background)
     if rigorous:
-        return rigorous_radiance(medium, ray, ambient, background)
+        return proven_radiance(medium, ray, ambient, background).reference()
     if callable(medium.albedo) or callable(medium.emission):
         return radiance_by_quadrature(medium, ray, ambient, background)
     if isinstance(medium, PiecewiseConstantMedium | VoxelGrid) and np.ndim(medium.albedo) + np.ndim(medium.emission):

@@ -9,7 +9,7 @@ from fogproof.analytic.compositing import composite, phi1
 from fogproof.analytic.error_free import ELEMENTARY, EPS, TINY
 from fogproof.analytic.plane_crossings import is_trilinear
 from fogproof.analytic.radiance_by_quadrature import radiance_by_quadrature
-from fogproof.analytic.rigorous import rigorous_radiance
+from fogproof.analytic.rigorous import proven_radiance
 from fogproof.analytic.thickness import channels_of, rays_with_channels
 from fogproof.analytic.transmittance import thickness
 from fogproof.contracts import Reference
@@ -30,8 +30,7 @@ def emitted_radiance(medium: AnyMedium, ray: Ray, *, times_sigma_a: bool = True,
     composited); by quadrature, estimated, for the others.
     """
     if rigorous:
-        channels_of(medium)
-        return rigorous_radiance(medium, ray, times_sigma_a=times_sigma_a)
+        return proven_radiance(medium, ray, times_sigma_a=times_sigma_a).reference()
     if times_sigma_a:
         return ambient_fog(medium, ray)
     if isinstance(medium, Medium | AnisotropicMedium):

@@ -3,42 +3,54 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from fogproof.analytic.balls import Ball, flint, proven, rational, reference
-from fogproof.analytic.rigorous_pieces import Piece, channel, pieces
+from fogproof.analytic.rigorous_pieces import Piece, channel, horner, pieces
 from fogproof.analytic.thickness import channels_of
 from fogproof.contracts import Reference
-from fogproof.errors import UnsupportedError
+from fogproof.errors import InvalidValueError, UnsupportedError
 from fogproof.scene import AnyMedium, Ray
-from fogproof.validate import Channels
+from fogproof.validate import nonnegative_channels
 
 SOURCE = "Johansson 2017, Arb; Johansson 2018, Numerical integration in arbitrary-precision ball arithmetic"
 
 
-def rigorous_thickness(medium: AnyMedium, ray: Ray) -> Reference:
-    """Return tau as `optical_thickness` does, proven."""
+class Proven(NamedTuple):
+    """Balls, one an element in C order, and the shape of their array."""
+
+    balls: list[Ball]
+    shape: tuple[int, ...]
+
+    def reference(self) -> Reference:
+        """Return the balls rounded to float64, with bounds that contain them."""
+        return reference(self.balls, self.shape, SOURCE)
+
+
+def proven_thickness(medium: AnyMedium, ray: Ray) -> Proven:
+    """Return tau as `optical_thickness` does."""
     return _over_rays(medium, ray, channels_of(medium), lambda parts, _: _total(parts))
 
 
-def rigorous_transmittance(medium: AnyMedium, ray: Ray) -> Reference:
-    """Return exp(-tau) as `transmittance` does, proven."""
+def proven_transmittance(medium: AnyMedium, ray: Ray) -> Proven:
+    """Return exp(-tau) as `transmittance` does."""
     return _over_rays(medium, ray, channels_of(medium), lambda parts, _: (-_total(parts)).exp())
 
 
-def rigorous_radiance(
-    medium: AnyMedium, ray: Ray, ambient: Channels = 0.0, background: Channels = 0.0, times_sigma_a: bool = True
-) -> Reference:
-    """Return the radiance at the camera as `ambient_fog` and `emitted_radiance` do, proven."""
-    channels = channels_of(medium, ambient=ambient, background=background)
+def proven_radiance(
+    medium: AnyMedium, ray: Ray, ambient: Any = 0.0, background: Any = 0.0, times_sigma_a: bool = True
+) -> Proven:
+    """Return the radiance at the camera as `ambient_fog` and `emitted_radiance` do."""
+    ambient = nonnegative_channels("ambient", ambient, "W/(m^2 sr)")
+    background = nonnegative_channels("background", background, "W/(m^2 sr)")
 
     def radiance(parts: list[Piece], c: int) -> Ball:
         L_i, L_bg = (rational(x[c] if isinstance(x, tuple) else x) for x in (ambient, background))
         return _composed(parts, L_i, L_bg, times_sigma_a)
 
-    return _over_rays(medium, ray, channels, radiance)
+    return _over_rays(medium, ray, channels_of(medium, ambient=ambient, background=background), radiance)
 
 
 def _composed(parts: list[Piece], ambient: Any, background: Any, times_sigma_a: bool) -> Ball:
@@ -56,8 +68,10 @@ def _total(parts: list[Piece]) -> Ball:
 
 def _over_rays(
     medium: AnyMedium, ray: Ray, channels: int | None, compute: Callable[[list[Piece], int], Ball]
-) -> Reference:
+) -> Proven:
     """Enclose `compute(pieces, channel)` for every ray and channel."""
+    if not isinstance(ray, Ray):
+        raise InvalidValueError("ray", "must be a Ray", ray)
     media = [medium] if medium.channels is None else [channel(medium, c) for c in range(medium.channels)]
     rows = zip(ray.origin.reshape(-1, 3), ray.direction.reshape(-1, 3), ray.length.reshape(-1), strict=True)
 
@@ -65,13 +79,13 @@ def _over_rays(
         return proven(lambda: compute(pieces(media[c % len(media)], *row), c))
 
     balls = [ball(row, c) for row in rows for c in range(channels or 1)]
-    return reference(balls, ray.shape if channels is None else (*ray.shape, channels), SOURCE)
+    return Proven(balls, ray.shape if channels is None else (*ray.shape, channels))
 
 
 def _gain(part: Piece, ambient: Any, times_sigma_a: bool) -> Ball:
     """Return the radiance that a piece sends to its start."""
-    if callable(part.albedo) or callable(part.emission):
-        return _varying(part, ambient, times_sigma_a)
+    if part.extinction is not None:
+        return _inside_a_voxel(part, ambient, times_sigma_a)
     gone = -(-part.tau).expm1()
     gain = gone * (part.albedo * ambient)
     if times_sigma_a:
@@ -90,18 +104,16 @@ def _reach(part: Piece, gone: Ball) -> Ball:
     return _integral(survived, part.length)
 
 
-def _varying(part: Piece, ambient: Any, times_sigma_a: bool) -> Ball:
-    albedo, emission = (f if callable(f) else (lambda _, f=f: f) for f in (part.albedo, part.emission))
-    survived, extinction = part.survived, part.extinction
+def _inside_a_voxel(part: Piece, ambient: Any, times_sigma_a: bool) -> Ball:
+    """Return the gain where every field is a polynomial: so is the source, exactly."""
+    scattering = part.albedo * part.extinction
+    emitted = (part.extinction - scattering) * part.emission if times_sigma_a else part.emission
+    source = scattering * ambient + emitted
+    if not source:
+        return flint().arb(0)
+    gained, survived = horner(source), part.survived
     assert survived is not None
-    assert extinction is not None
-
-    def gained(z: Any) -> Any:
-        share, sigma = albedo(z), extinction(z)
-        emitted = sigma * (1 - share) * emission(z) if times_sigma_a else emission(z)
-        return survived(z) * (sigma * share * ambient + emitted)
-
-    return _integral(gained, part.length)
+    return _integral(lambda z: survived(z) * gained(z), part.length)
 
 
 def _integral(function: Any, length: Any) -> Ball:

@@ -43,6 +43,7 @@ def rigorous_airlight(
 def airlight_ball(sigma_t: float, h: float, a: float, b: float, phase: PhaseFunction) -> Ball:
     """Return one airlight integral [1/m] as a ball of 38 digits."""
     arb = flint().arb
+    factor(phase, flint().acb(0))  # refuses what has no formula, here: inside `acb.integral` an exception is lost
     if a == b:
         return arb(0)
     if h == 0 and a <= 0 <= b:

@@ -39,8 +39,8 @@ class Piece:
     tau       optical thickness of the whole piece
     sigma     extinction coefficient where it is constant, else None
     survived  z -> exp(-tau(z)), where the extinction is not constant
-    albedo, emission  constants, or functions of z
-    extinction  z -> sigma_t(z), only where albedo or emission are functions
+    albedo, emission  rational constants; polynomials (`flint.fmpq_poly`) in z inside trilinear voxels
+    extinction  the polynomial sigma_t(z), inside trilinear voxels
     """
 
     length: Any
@@ -49,7 +49,7 @@ class Piece:
     emission: Any
     sigma: Any = None
     survived: Function | None = None
-    extinction: Function | None = None
+    extinction: Any = None
 
 
 def pieces(medium: AnyMedium, origin: np.ndarray, direction: np.ndarray, length: float) -> list[Piece]:
@@ -205,19 +205,15 @@ def _cell(places: list[Any], p: Any) -> int | None:
 
 def _trilinear(grid: VoxelGrid, start: list[Any], w: list[Any], length: Any) -> Piece:
     """Return the piece inside one cell between voxel centres, where every field is a cubic polynomial in z."""
-    sigma = _cubic(grid.sigma_t, start, w, length)
-    integral = sigma.integral()
-    fields = [_cubic(a, start, w, length) if a.ndim else rational(a) for a in (grid.albedo, grid.emission)]
-    albedo, emission = (_horner(f) if a.ndim else f for f, a in zip(fields, (grid.albedo, grid.emission), strict=True))
-    tau = _horner(integral)
-    return Piece(
-        length,
-        flint().arb(integral(length)),
-        albedo,
-        emission,
-        survived=lambda z: (-tau(z)).exp(),
-        extinction=_horner(sigma),
+    poly = flint().fmpq_poly
+    sigma, albedo, emission = (
+        _cubic(a, start, w, length) if a.ndim else poly([rational(a)])
+        for a in (grid.sigma_t, grid.albedo, grid.emission)
     )
+    integral = sigma.integral()
+    tau = horner(integral)
+    survived = lambda z: (-tau(z)).exp()  # noqa: E731
+    return Piece(length, flint().arb(integral(length)), albedo, emission, survived=survived, extinction=sigma)
 
 
 def _cubic(array: np.ndarray, start: list[Any], w: list[Any], length: Any) -> Any:
@@ -243,7 +239,8 @@ def _interpolated(array: np.ndarray, place: list[Any]) -> Any:
     return sum((a[1] * b[1] * c[1] * rational(array[a[0], b[0], c[0]]) for a, b, c in product(*axes)), fq(0))
 
 
-def _horner(poly: Any) -> Function:
+def horner(poly: Any) -> Function:
+    """Return a polynomial with rational coefficients as a function of balls."""
     coefficients = poly.coeffs()[::-1]
 
     def value(z: Any) -> Any:

@@ -12,7 +12,7 @@ from fogproof.analytic.exponential_medium import exponential_thickness
 from fogproof.analytic.linear_medium import linear_thickness
 from fogproof.analytic.opengl_fog import fog_thickness
 from fogproof.analytic.plane_crossings import cell_thickness
-from fogproof.analytic.rigorous import rigorous_thickness, rigorous_transmittance
+from fogproof.analytic.rigorous import proven_thickness, proven_transmittance
 from fogproof.analytic.thickness import Rays, Thickness, channels_of, rays_with_channels
 from fogproof.contracts import Reference
 from fogproof.scene import (
@@ -39,7 +39,7 @@ def optical_thickness(medium: AnyMedium, ray: Ray, *, rigorous: bool = False) ->
     Error: 1 EPS relative for a homogeneous medium; see the method named in the result for the others.
     """
     if rigorous:
-        return rigorous_thickness(medium, ray)
+        return proven_thickness(medium, ray).reference()
     tau = thickness(medium, ray, channels_of(medium))
     with np.errstate(under="ignore", invalid="ignore"):
         value = tau.value + tau.low
@@ -55,7 +55,7 @@ def transmittance(medium: AnyMedium, ray: Ray, *, rigorous: bool = False) -> Ref
     voxels), because it is never rounded; else the error of tau more. Where T underflows it is absolute, 2 TINY.
     """
     if rigorous:
-        return rigorous_transmittance(medium, ray)
+        return proven_transmittance(medium, ray).reference()
     tau = thickness(medium, ray, channels_of(medium))
     value, rounding, inherited = survival(tau)
     return Reference(value, rounding + inherited, f"exp(-tau), {tau.method}", tau.source)
