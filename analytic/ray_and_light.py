@@ -61,6 +61,11 @@ def place(ray: Ray, position: tuple[float, float, float]) -> Placement:
     return Placement(h, h_low, a, a_low, b, length, foot, d, uncertainty)
 
 
+def meets_light(where: Placement) -> np.ndarray:
+    """Return which rays go through the light itself."""
+    return (where.h == 0) & (where.a <= 0) & (where.b >= 0)
+
+
 def moved(where: Placement, sigma: np.ndarray, phase: AirlightPhase) -> tuple[np.ndarray, np.ndarray]:
     """Return what the uncertainty of the coordinates costs the airlight integral with `sigma` (n, channels).
 

@@ -23,7 +23,7 @@ from fogproof.analytic.error_free import EPS, TINY
 from fogproof.analytic.light_cone import edges, intensity_at, lit_by_cone
 from fogproof.analytic.panel_rule import NODES, WEIGHTS
 from fogproof.analytic.phase_functions import phase_pdf
-from fogproof.analytic.ray_and_light import Placement, place
+from fogproof.analytic.ray_and_light import Placement, meets_light, place
 from fogproof.analytic.shadows import shadow_of_direction, shadow_of_point
 from fogproof.analytic.transmittance import thickness
 from fogproof.analytic.varying_phase import share_at
@@ -94,7 +94,7 @@ def single_scattering_by_quadrature(
         error = np.where(scale > 0, scale * error + 4 * EPS * scale * value + TINY, 0.0)
         value = np.where(scale > 0, scale * value, 0.0)
         if where is not None and not isinstance(light, DirectionalLight):
-            on_light = (where.h == 0) & (where.a <= 0) & (where.b >= 0)
+            on_light = meets_light(where)
             value[on_light], error[on_light] = _at_the_light(medium, ray, light, shape, occluders, on_light)
     return value, error, METHOD, SOURCE
 
@@ -137,6 +137,8 @@ def _pieces(
         weight = np.where((middle > outer) & (middle < over), np.minimum(weight, 0.5), weight)
         weight = np.where((middle > dark) & (middle < undark), 0.0, weight)
     lit = weight > 0
+    if where is not None:
+        lit &= ~meets_light(where)[owner]
     owner, low, high, weight = owner[lit], low[lit], high[lit], weight[lit]
     span = high - low
     if where is not None:
