@@ -76,9 +76,9 @@ def falloff(where: Placement, light: SpotLight, ray: np.ndarray) -> tuple[Gain |
         return None, np.zeros(len(where.h))
     A, B = axis_products(where, light)
 
-    def factor(w: np.ndarray, wt: np.ndarray, segment: np.ndarray) -> np.ndarray:
+    def factor(w: np.ndarray, wt: np.ndarray, scale: np.ndarray, segment: np.ndarray) -> np.ndarray:
         i = ray[segment]
-        cosine = (2 * A[i] + B[i] * (w - wt)) / (w + wt)
+        cosine = (2 * A[i] * scale + B[i] * (w - wt)) / (w + wt)
         return intensity(light, cosine)
 
     steepness = light.exponent + (1.5 / (inner - outer) if inner > outer else 0.0)

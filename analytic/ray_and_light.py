@@ -7,8 +7,9 @@ from typing import NamedTuple
 import numpy as np
 
 from fogproof.analytic.airlight_phase import AirlightPhase
-from fogproof.analytic.error_free import EPS, two_sum
-from fogproof.analytic.vectors import cross, dot, norm, product
+from fogproof.analytic.error_free import EPS
+from fogproof.analytic.flat_rays import FlatRays
+from fogproof.analytic.vectors import cross, dot, hypot, norm, product_pair, split, sum_pair
 from fogproof.scene import Ray
 
 
@@ -34,31 +35,36 @@ class Placement(NamedTuple):
     @property
     def nearest(self) -> np.ndarray:
         """Distance of the light from each segment."""
-        t = np.clip(0.0, self.a, self.b)
-        return np.hypot(t, self.h)
+        return hypot(np.maximum(np.maximum(self.a, -self.b), 0.0), self.h)
 
 
-def place(ray: Ray, position: tuple[float, float, float]) -> Placement:
-    """Return the rays in the coordinates of a light at `position`, in about twice the precision of float64.
+def place(ray: Ray | FlatRays, position: tuple[float, float, float]) -> Placement:
+    """Return the (flattened) rays in the coordinates of a light at `position`, in about twice the precision of float64.
 
     The direction counts as d/|d|: h = |q x d| / |d| and a = -q.d / |d|, where q leads from the origin to the light.
     """
     light = np.array(position)[:, None]
-    origin, d = ray.origin.reshape(-1, 3).T, ray.direction.reshape(-1, 3).T
+    origin, direction = (np.ascontiguousarray(x.reshape(-1, 3).T) for x in (ray.origin, ray.direction))
     length = ray.length.ravel()
-    q, q_low = two_sum(light, -origin)
-    square, square_low = dot(d, np.zeros_like(d), d)
+    q, q_low = sum_pair(light, -origin)
+    halves, d = split(q), split(direction)
+    square, square_low = dot(d, np.zeros_like(direction), d)
     excess = 0.5 * ((square - 1) + square_low)  # |d| - 1, for a direction that is off by rounding only
-    h, h_low = norm(*cross(q, q_low, d))
-    h, h_low = two_sum(h, h_low - h * excess)
-    along, along_low = dot(q, q_low, d)
-    a, a_low = two_sum(-along, along * excess - along_low)
-    b, b_low = two_sum(a, length)
-    b = b + np.where(np.isfinite(length), b_low + a_low, 0.0)
-    ahead, ahead_low = product(along, d)
-    foot = (ahead - q) + (ahead_low + along_low * d - 2 * excess * ahead - q_low)
-    uncertainty = EPS * sum(np.sqrt(np.sum(x * x, axis=0)) for x in (origin, light, q, q))
-    return Placement(h, h_low, a, a_low, b, length, foot, d, uncertainty)
+    h, h_low = norm(*cross(halves, q_low, d))
+    h, h_low = sum_pair(h, h_low - h * excess)
+    along, along_low = dot(halves, q_low, d)
+    a, a_low = sum_pair(-along, along * excess - along_low)
+    endless = np.isinf(length)
+    b, b_low = sum_pair(a, np.where(endless, 0.0, length))
+    b = np.where(endless, np.inf, b + (b_low + a_low))
+    (ahead,) = split([along])
+    foot = np.empty_like(q)
+    for i, di in enumerate(d):
+        part, rest = product_pair(ahead, di)
+        foot[i] = (part - q[i]) + (rest + along_low * di.value - 2 * excess * part - q_low[i])
+    size = np.abs(origin).sum(axis=0) + np.abs(light).sum() + 2 * np.abs(q).sum(axis=0)
+    uncertainty = EPS * size
+    return Placement(h, h_low, a, a_low, b, length, foot, direction, uncertainty)
 
 
 def meets_light(where: Placement) -> np.ndarray:
@@ -75,8 +81,8 @@ def moved(where: Placement, sigma: np.ndarray, phase: AirlightPhase) -> tuple[np
     h, a, b, nearest = where.h, where.a, where.b, where.nearest
     with np.errstate(all="ignore"):
         turn = where.uncertainty / nearest
-        low = np.where(b < np.inf, -b / np.hypot(b, h), -1.0)
-        bend, steep = (x * turn for x in phase.slope(low, -a / np.hypot(a, h)))
+        low = np.where(b < np.inf, -b / hypot(b, h), -1.0)
+        bend, steep = (x * turn for x in phase.slope(low, -a / hypot(a, h)))
         angular = 4 * EPS - 2 * np.log1p(-turn) + bend / (1 - bend)
         relative = np.expm1(2 * sigma * where.uncertainty[:, None] + angular[:, None])
     known = ((turn < 1) & (bend < 1))[:, None]

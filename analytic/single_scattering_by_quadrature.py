@@ -20,6 +20,7 @@ from fogproof.analytic.breakpoints import breakpoints
 from fogproof.analytic.coefficients import coefficients
 from fogproof.analytic.convex_shapes import chord, contains, through
 from fogproof.analytic.error_free import EPS, TINY
+from fogproof.analytic.flat_rays import FlatRays
 from fogproof.analytic.light_cone import edges, intensity_at, lit_by_cone
 from fogproof.analytic.panel_rule import NODES, WEIGHTS
 from fogproof.analytic.phase_functions import phase_pdf
@@ -81,15 +82,14 @@ Look = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
 def single_scattering_by_quadrature(
-    medium: AnyMedium, ray: Ray, light: Aimed, shape: Shape, occluders: Sequence[Occluder]
+    medium: AnyMedium, ray: FlatRays, light: Aimed, shape: Shape, occluders: Sequence[Occluder]
 ) -> tuple[np.ndarray, np.ndarray, str, str]:
     """Return the radiance (n, channels) along the flattened rays, its estimated error, method and source."""
-    ray = Ray(ray.origin.reshape(-1, 3), ray.direction.reshape(-1, 3), ray.length.ravel())
     where = None if isinstance(light, DirectionalLight) else place(ray, light.position)
     with np.errstate(all="ignore"):
         pieces = _pieces(medium, ray, light, shape, occluders, where)
         look = _integrand(medium, ray, light, shape, where, pieces)
-        value, error = _integrate(pieces, look, ray.length.size)
+        value, error = _integrate(pieces, look, len(ray.length))
         scale = np.atleast_1d(strength(light))
         error = np.where(scale > 0, scale * error + 4 * EPS * scale * value + TINY, 0.0)
         value = np.where(scale > 0, scale * value, 0.0)
@@ -100,13 +100,13 @@ def single_scattering_by_quadrature(
 
 
 def _pieces(
-    medium: AnyMedium, ray: Ray, light: Aimed, shape: Shape, occluders: Sequence[Occluder], where: Placement | None
+    medium: AnyMedium, ray: FlatRays, light: Aimed, shape: Shape, occluders: Sequence[Occluder], where: Placement | None
 ) -> Pieces:
     if isinstance(medium, Medium):
         inside = chord(shape, ray)
         breaks = np.stack([inside.start, inside.end], axis=1)
     else:
-        breaks = breakpoints(medium, ray)
+        breaks = breakpoints(medium, Ray(*ray))
     if np.isinf(breaks).any():
         raise UnsupportedError("an endless ray through a medium without end: give the ray a length", "ray")
     start, end = breaks[:, :1], breaks[:, -1:]
@@ -159,7 +159,7 @@ def _from_light(t: np.ndarray, h: np.ndarray) -> tuple[np.ndarray, np.ndarray, n
 
 
 def _integrand(
-    medium: AnyMedium, ray: Ray, light: Aimed, shape: Shape, where: Placement | None, pieces: Pieces
+    medium: AnyMedium, ray: FlatRays, light: Aimed, shape: Shape, where: Placement | None, pieces: Pieces
 ) -> Look:
     """Return the integrand of each piece in its variable, for a light of unit strength."""
     own = pieces.ray
@@ -274,7 +274,7 @@ def _integrate(pieces: Pieces, look: Look, count: int) -> tuple[np.ndarray, np.n
 
 def _at_the_light(
     medium: AnyMedium,
-    ray: Ray,
+    ray: FlatRays,
     light: PointLight | SpotLight,
     shape: Shape,
     occluders: Sequence[Occluder],
