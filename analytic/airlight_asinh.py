@@ -26,7 +26,7 @@ from fogproof.analytic.airlight_phase import AirlightPhase
 from fogproof.analytic.airlight_segments import Segments, cut
 from fogproof.analytic.error_free import EPS, TINY, two_prod
 from fogproof.analytic.gauss_legendre import RULES
-from fogproof.analytic.vectors import hypot, norm, sum_pair
+from fogproof.analytic.vectors import hypot, sum_pair
 
 REACHES = {12: (0.75, 6.0), 16: (1.3, 14.0), 20: (1.9, 26.0), 28: (3.0, 50.0)}
 """Nodes -> the largest panel that they integrate to 1e-16: its width in s, and e-folds of the attenuation across it.
@@ -120,8 +120,8 @@ class Window(NamedTuple):
 
 def _window(segments: Segments, tail: float) -> Window:
     """Choose the anchor, and the part of the segment around it that counts: nothing where nothing arrives."""
-    sigma, sigma_low, h, h_low, camera, camera_low, a, b, length = segments
-    ra, rb = hypot(a, h), hypot(b, h)
+    sigma, sigma_low, h, _, camera, camera_low, a, b, length, ra, ra_low = segments
+    rb = hypot(b, h)
     wa, wta = _w(a, ra, h), _w(-a, ra, h)
     wb, wtb = _w(b, rb, h), _w(-b, rb, h)
     H = sigma * h
@@ -148,9 +148,8 @@ def _window(segments: Segments, tail: float) -> Window:
 
     # Path camera - anchor - light: r_a and the way to a where the anchor is the start, else w0 - camera, both positive.
     before, before_low = sum_pair(a, -camera)
-    start, start_low = norm((a, h), (np.where(before > 0, 0.0, camera_low), h_low))
-    path, path_low = sum_pair(np.where(at_start, start, w0), np.where(at_start, before, -camera))
-    path_low += np.where(at_start, start_low + before_low, 0.0)
+    path, path_low = sum_pair(np.where(at_start, ra, w0), np.where(at_start, before, -camera))
+    path_low += np.where(at_start, ra_low + before_low, 0.0)
     path_low -= np.where(at_start & (before == 0), 0.0, camera_low)
     tau, tau_low = two_prod(sigma, path)
     tau_low = tau_low + sigma * path_low + sigma_low * path

@@ -22,6 +22,7 @@ from fogproof.analytic.flat_rays import FlatRays
 from fogproof.analytic.light_cone import edges, falloff, lit_by_cone
 from fogproof.analytic.ray_and_light import Placement, moved, place
 from fogproof.analytic.shadows import Shadow, shadow_of_point
+from fogproof.analytic.vectors import norm
 from fogproof.errors import UnsupportedError
 from fogproof.scene import Isotropic, Medium
 from fogproof.scene.lights import PointLight, SpotLight
@@ -99,7 +100,11 @@ def _lit(
     start, end = where.a + (where.a_low + inside.start), where.a + (where.a_low + inside.end)
     start, end = np.where(inside.start == 0, where.a, start), np.where(inside.end == where.length, where.b, end)
     camera_low = np.where(inside.start == 0, where.a_low, 0.0)
-    whole = Segments(none, none, where.h, where.h_low, start, camera_low, start, end, inside.end - inside.start)
+    near, near_low = where.near, where.near_low
+    if inside.start.any():
+        near, near_low = norm((start, where.h), (camera_low, where.h_low))
+    length = inside.end - inside.start
+    whole = Segments(none, none, where.h, where.h_low, start, camera_low, start, end, length, near, near_low)
     unsure = (inside.sure_start > inside.start) | (inside.sure_end < inside.end)
     spot = isinstance(light, SpotLight)
     if not (shadows or spot or unsure.any()):

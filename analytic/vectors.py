@@ -79,7 +79,7 @@ def hypot(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def norm(x: Vector, x_low: Vector) -> Pair:
-    """Return the pair of |x + x_low|, for components of any size: one Newton step from the rounded length."""
+    """Return the pair of |x + x_low|, for components of any size."""
     largest = np.abs(x[0])
     for xi in x[1:]:
         largest = np.maximum(largest, np.abs(xi))
@@ -87,13 +87,23 @@ def norm(x: Vector, x_low: Vector) -> Pair:
     if extreme:
         exponent = -np.frexp(largest)[1]
         x, x_low = [np.ldexp(xi, exponent) for xi in x], [np.ldexp(xi, exponent) for xi in x_low]
-    halves = split(x)
-    square, rest = dot(halves, x_low, halves)
-    for xi, xi_low in zip(x, x_low, strict=True):
-        rest = rest + xi * xi_low  # the dot product has it once
-    root = np.sqrt(square)
-    again, again_rest = product_pair(*split([root]) * 2)
-    step = ((square - again) - again_rest) + rest
-    low = np.divide(step, 2 * root, out=np.zeros_like(step), where=root > 0)
-    root, low = sum_pair(root, low)
+    root, low = root_pair(*square(split(x), x_low))
     return (np.ldexp(root, -exponent), np.ldexp(low, -exponent)) if extreme else (root, low)
+
+
+def square(x: Sequence[Split], x_low: Vector) -> Pair:
+    """Return the pair of |x + x_low|^2."""
+    total, low = dot(x, x_low, x)
+    for xi, xi_low in zip(x, x_low, strict=True):
+        low = low + xi.value * xi_low  # the dot product has it once
+    return sum_pair(total, low)
+
+
+def root_pair(x: np.ndarray, x_low: np.ndarray) -> Pair:
+    """Return the pair of the square root of x + x_low >= 0: one Newton step from the rounded root."""
+    root = np.sqrt(x)
+    (halves,) = split([root])
+    again, rest = product_pair(halves, halves)
+    step = ((x - again) - rest) + x_low
+    low = np.divide(step, 2 * root, out=np.zeros_like(step), where=root > 0)
+    return sum_pair(root, low)
