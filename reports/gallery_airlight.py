@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fogproof.analytic import airlight_integral, ambient_fog, single_scattering, transmittance
-from fogproof.estimators import Equiangular, Airlight, FreePath
+from fogproof.estimators import Airlight, Equiangular, FreePath
 from fogproof.reports.pictures import EXPECTED, OBSERVED, THIRD
 from fogproof.scene import HenyeyGreenstein, Medium, PointLight, Ray
 
