@@ -5,7 +5,7 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help verify test lint format clean
+.PHONY: help verify test lint format calibrate bench clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -26,6 +26,12 @@ format: $(VENV)/.installed-lint  ## let ruff rewrite what it can
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 
+calibrate: $(VENV)/.installed-test  ## how often the checks reject what is right: 20 runs of the catalogue, 10^4 small verdicts
+	$(BIN)/python tools/calibrate.py
+
+bench: $(VENV)/.installed-test  ## benchmarks, as ratios of interleaved runs
+	@for script in benchmarks/*.py; do echo "== $$script"; $(BIN)/python $$script || exit 1; done
+
 clean:  ## remove the environment and everything built
 	rm -rf $(VENV) build
 
@@ -34,7 +40,7 @@ $(VENV)/bin/python:
 	$(BIN)/python -m pip install --quiet --upgrade 'pip>=25.1'
 
 $(VENV)/.installed: $(VENV)/bin/python pyproject.toml
-	$(BIN)/python -m pip install --quiet --editable '.[mitsuba]'
+	$(BIN)/python -m pip install --quiet --editable '.[mie,mitsuba]'
 	@touch $@
 
 $(VENV)/.installed-test: $(VENV)/.installed

@@ -34,6 +34,9 @@ PANELS = 4096
 FIRST = 8
 """Panels that an interval without known breaks starts with."""
 
+THICK, UNSEEN = 8.0, 1e-30
+"""A panel thicker than this is halved, as long as more than that of its light arrives."""
+
 BLOCK = 4096
 """Panels evaluated at a time."""
 
@@ -173,6 +176,9 @@ def _too_wrong(panels: Panels, count: int, tolerance: float) -> np.ndarray:
         share = tolerance / number[rays].reshape(-1, *[1] * (panels.tau.ndim - 1))
         bad = panels.tau_error > np.maximum(share * totals[0][rays], 8 * EPS * panels.tau)
         bad |= seen * panels.gain_error > np.maximum(share * totals[1][rays], 8 * EPS * seen * panels.gain)
+        # Nodes that see nothing through a thick panel would find no gain in it, and their halves none either.
+        glows = (panels.jumps[..., 1] > 0) | (panels.ends[..., 1, 0] > 0)
+        bad |= glows & (panels.tau > THICK) & (seen > UNSEEN)
     bad = bad.reshape(len(bad), -1).any(axis=-1)
     return bad & (number[rays] < PANELS) & (panels.width > 4 * EPS * (panels.start + panels.width))
 

@@ -20,8 +20,6 @@ from fogproof.scene import (
     OpenGLFog,
     PiecewiseConstantMedium,
     Procedural,
-    Ramp,
-    VaryingPhase,
     VoxelGrid,
 )
 from fogproof.validate import as_float_array, require
@@ -99,15 +97,6 @@ def coefficients(medium: AnyMedium, x: Any, w: Any, channels: int | None = None)
         case Procedural():
             return _procedural(medium, x, w, shape)
     return Coefficients(*(np.broadcast_to(np.asarray(v, float), shape) for v in (sigma_t, albedo, emission)))
-
-
-def share_at(phase: VaryingPhase, x: Any) -> np.ndarray:
-    """Return the share q(x) in [0, 1] of the second phase function at points (..., 3) -> (...)."""
-    x = np.asarray(x, float)
-    if isinstance(phase.share, Ramp):
-        way = phase.share.end - phase.share.start
-        return np.clip(((x - phase.share.start) @ way) / (way @ way), 0.0, 1.0)
-    return _checked("share", phase.share(x), x.shape[:-1], 1.0, "must lie in [0, 1]")
 
 
 def _fog(medium: OpenGLFog, t: np.ndarray) -> np.ndarray:

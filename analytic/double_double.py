@@ -18,6 +18,9 @@ from fogproof.analytic.error_free import two_prod, two_sum
 
 Pair = tuple[np.ndarray, np.ndarray]
 
+SMALL = 1e-100
+"""Components of positions, directions and gradients below this count as 0, so that no product of two underflows."""
+
 UNIT = 2.0**-100
 """A generous bound of the relative error of a short chain of these operations; nothing the oracle says rests on less."""
 
@@ -68,12 +71,23 @@ def square_root(x: Pair) -> Pair:
 
 
 def dot(a: Any, b: Any) -> Pair:
-    """Return the dot product over the last axis of float64 arrays."""
-    a, b = np.broadcast_arrays(np.asarray(a, float), np.asarray(b, float))
+    """Return the dot product over the last axis of float64 arrays, whose components below SMALL count as 0."""
+    a, b = np.broadcast_arrays(flushed(a), flushed(b))
     total = two_prod(a[..., 0], b[..., 0])
     for i in range(1, a.shape[-1]):
         total = add(total, two_prod(a[..., i], b[..., i]))
     return total
+
+
+def dot_error(a: Any, b: Any) -> np.ndarray:
+    """Return a bound of the error of `dot`."""
+    return UNIT * np.sum(np.abs(flushed(a) * flushed(b)), axis=-1)
+
+
+def flushed(x: Any) -> np.ndarray:
+    """Return x with every component below SMALL taken as 0."""
+    x = np.asarray(x, float)
+    return np.where(np.abs(x) < SMALL, 0.0, x)
 
 
 def total(x: Pair) -> Pair:

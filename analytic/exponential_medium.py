@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from fogproof.analytic import double_double as dd
-from fogproof.analytic.double_double import UNIT, Pair
+from fogproof.analytic.double_double import Pair
 from fogproof.analytic.error_free import ELEMENTARY, EPS, TINY
 from fogproof.analytic.thickness import Rays, Thickness
 from fogproof.scene import ExponentialMedium
@@ -57,7 +57,7 @@ def exponential_free_path(medium: ExponentialMedium, rays: Rays, tau: np.ndarray
         sigma = np.exp(e[0]) * (1 + e[1]) * medium.sigma_0
         q = tau / sigma
         x = k[0] * q
-        t = np.where(x == 0, q, q * np.log1p(x) / np.where(x == 0, 1, x))
+        t = np.where(x == 0, q, q * (np.log1p(x) / np.where(x == 0, 1, x)))
         relative = ELEMENTARY + 4 * EPS + e_error + TINY / sigma
         error = (ELEMENTARY + 3 * EPS) * t + q * relative / (1 + x - np.abs(x) * relative)
 
@@ -80,5 +80,4 @@ def _exponent(medium: ExponentialMedium, rays: Rays) -> tuple[Pair, Pair, np.nda
     e, k = dd.dot(medium.rate, rays.origin), dd.dot(medium.rate, rays.direction)
     shape = np.broadcast_shapes(e[0].shape, k[0].shape, np.shape(medium.sigma_0), rays.length.shape)
     e, k = (dd.each(lambda x: np.broadcast_to(x, shape), part) for part in (e, k))
-    e_error = UNIT * np.sum(np.abs(medium.rate * rays.origin), axis=-1)
-    return e, k, e_error, UNIT * np.sum(np.abs(medium.rate * rays.direction), axis=-1)
+    return e, k, dd.dot_error(medium.rate, rays.origin), dd.dot_error(medium.rate, rays.direction)

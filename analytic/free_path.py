@@ -47,7 +47,8 @@ def free_path(medium: AnyMedium, ray: Ray, tau: Any) -> Reference:
             known = "Medium, LinearMedium and ExponentialMedium"
             raise UnsupportedError(f"free_path knows {known}, got {type(medium).__name__}", "medium")
     value, error = np.broadcast_to(value, rays.shape), np.broadcast_to(error, rays.shape)
-    close = (np.abs(value - rays.length) <= error) & np.isfinite(rays.length)
+    with np.errstate(invalid="ignore"):
+        close = (np.abs(value - rays.length) <= error) & np.isfinite(rays.length)
     value = np.where(value > rays.length, np.inf, value)
     return Reference(value, np.where(close, np.inf, error), "closed form", "elementary")
 

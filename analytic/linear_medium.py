@@ -38,7 +38,9 @@ def linear_thickness(medium: LinearMedium, rays: Rays) -> Thickness:
     reach = dd.where(whole | (b[0] == 0), dd.pair(finite), dd.divide(top, slope))
     height = dd.add(at_start, at_end)
     tau = dd.times(reach, (height[0] / 2, height[1] / 2))
-    error = UNIT * tau[0] + reach[0] * (a_error + np.maximum(finite, reach[0]) * b_error) + 2 * TINY
+    with np.errstate(under="ignore", over="ignore", invalid="ignore"):
+        error = UNIT * tau[0] + reach[0] * (a_error + np.maximum(finite, reach[0]) * b_error) + 2 * TINY
+        error = np.where(np.isinf(tau[0]), np.inf, error)
 
     endless = np.isinf(s) & ((b[0] > 0) | ((b[0] == 0) & (a[0] > 0)))
     unsure = np.isinf(s) & (np.abs(b[0]) <= b_error) & (b[0] != 0)
@@ -58,12 +60,16 @@ def linear_free_path(medium: LinearMedium, rays: Rays, tau: np.ndarray) -> tuple
     zero = dd.pair(np.zeros_like(tau))
     inside = ~dd.less(a, zero)
     start = dd.where(inside, a, zero)
-    twice = dd.times(dd.pair(2 * tau), b)
+    # Everything in units of 2^exponent [1/m], so that no square leaves the range of numbers.
+    exponent = np.frexp(np.maximum(start[0], np.sqrt(np.abs(b[0])) * np.sqrt(2 * tau)))[1]
+    start = dd.each(lambda x: np.ldexp(x, -exponent), start)
+    twice = dd.times(dd.each(lambda x: np.ldexp(x, -2 * exponent), b), dd.pair(2 * tau))
+    a_error, b_error = np.ldexp(a_error, -exponent), np.ldexp(b_error, -2 * exponent)
     square = dd.add(dd.times(start, start), twice)
     escapes = (square[0] < 0) | ((square[0] == 0) & (b[0] == 0)) | (~inside & (b[0] <= 0))
     root = dd.square_root(dd.where(escapes, dd.pair(np.ones_like(tau)), square))
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        distance = dd.divide(dd.pair(2 * tau), dd.add(start, root))
+        distance = dd.divide(dd.pair(np.ldexp(2 * tau, -exponent)), dd.add(start, root))
         offset = dd.where(inside, zero, dd.divide(dd.negative(a), b))
         t = dd.add(distance, offset)
 
@@ -71,7 +77,8 @@ def linear_free_path(medium: LinearMedium, rays: Rays, tau: np.ndarray) -> tuple
         slack = UNIT * (start[0] ** 2 + np.abs(twice[0])) + 2 * start[0] * a_error + 2 * tau * b_error
         root_error = np.minimum(np.sqrt(slack), slack / root[0])
         error = distance[0] * (UNIT + (root_error + a_error) / (start[0] + root[0]))
-        error = error + np.where(inside, 0.0, (a_error + offset[0] * (b_error + UNIT * b[0])) / b[0])
+        unscaled = np.ldexp(a_error, exponent), np.ldexp(b_error, 2 * exponent)
+        error = error + np.where(inside, 0.0, (unscaled[0] + offset[0] * (unscaled[1] + UNIT * b[0])) / b[0])
         unsure = inside & (np.abs(square[0]) <= slack) & (tau > 0) & (slack > 0)
     none = tau == 0
     value = np.where(none, 0.0, np.where(escapes, np.inf, t[0]))
@@ -85,5 +92,5 @@ def _line(medium: LinearMedium, rays: Rays) -> tuple[Pair, Pair, np.ndarray, np.
     b = dd.dot(medium.gradient, rays.direction)
     shape = np.broadcast_shapes(a[0].shape, b[0].shape)
     a, b = (dd.each(lambda x: np.broadcast_to(x, shape), line) for line in (a, b))
-    size = np.abs(medium.sigma_0) + np.sum(np.abs(medium.gradient * rays.origin), axis=-1)
-    return a, b, UNIT * size, UNIT * np.sum(np.abs(medium.gradient * rays.direction), axis=-1)
+    a_error = UNIT * np.abs(medium.sigma_0) + dd.dot_error(medium.gradient, rays.origin)
+    return a, b, a_error, dd.dot_error(medium.gradient, rays.direction)

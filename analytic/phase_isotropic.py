@@ -1,13 +1,14 @@
-"""Isotropic scattering: 1/(4 pi) in every direction."""
+"""Isotropic scattering: f = 1/(4 pi) in every direction."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from fogproof.analytic.error_free import EPS
 from fogproof.scene.phase_functions import Isotropic
 
 SOURCE = "uniform distribution on the sphere"
-EPS = np.finfo(np.float64).eps
+METHOD = "closed form"
 
 
 def pdf(_phase: Isotropic, mu: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -20,3 +21,14 @@ def cdf(_phase: Isotropic, mu: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return F(mu) = (1 + mu)/2; relative error eps/2."""
     value = (1 + mu) / 2
     return value, EPS / 2 * value
+
+
+def quantile(_phase: Isotropic, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return mu = 2 xi - 1; relative error eps/2."""
+    value = 2 * xi - 1
+    return value, EPS / 2 * np.abs(value)
+
+
+def mean_cosine(_phase: Isotropic) -> tuple[float, float]:
+    """Return 0, exactly."""
+    return 0.0, 0.0

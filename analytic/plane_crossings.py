@@ -134,6 +134,7 @@ def segments(medium: CellMedium, ray: Ray) -> Iterator[tuple[slice, Segments]]:
 def _axes(medium: CellMedium, origin: np.ndarray, direction: np.ndarray) -> list[Axis]:
     if isinstance(medium, PiecewiseConstantMedium):
         return [Axis(dd.dot(medium.axis, origin), dd.dot(medium.axis, direction), medium.boundaries)]
+    origin, direction = dd.flushed(origin), dd.flushed(direction)
     axes = []
     for i, n in enumerate(medium.sigma_t.shape[:3]):
         size = dd.add(dd.pair(medium.upper[i]), dd.pair(-medium.lower[i]))
@@ -146,17 +147,17 @@ def _axes(medium: CellMedium, origin: np.ndarray, direction: np.ndarray) -> list
 
 def _sorted(axes: list[Axis], length: np.ndarray) -> Segments:
     """Sort the crossings of all axes and return what lies between them, cut to [0, length]."""
-    crossings, labels, slack = [], [], np.zeros(len(length))
-    for label, axis in enumerate(axes):
-        t, uncertainty = _crossings(axis)
-        reached = (t[0] > -uncertainty) & (t[0] < length[:, None] + uncertainty)
-        slack += np.sum(np.where(reached, np.minimum(uncertainty, length[:, None]), 0.0), axis=-1)
-        crossings.append(t)
-        labels.append(np.full(t[0].shape, label))
-    value, low = (np.concatenate([crossing[i] for crossing in crossings], axis=-1) for i in range(2))
+    crossings = [_crossings(axis) for axis in axes]
+    value, low, uncertainty = (np.concatenate(columns, axis=-1) for columns in zip(*crossings, strict=True))
+    leave = np.min([np.max(column, axis=-1) for column, _, _ in crossings], axis=0)
+    leave = np.clip(leave, 0.0, length)[:, None]
+    reached = (value >= -uncertainty) & (value <= leave + uncertainty)
+    slack = np.sum(np.where(reached, np.minimum(uncertainty, leave), 0.0), axis=-1)
+
     order = np.lexsort((low, value), axis=-1)
     t = dd.each(lambda x: np.take_along_axis(x, order, axis=-1), (value, low))
-    owner = np.take_along_axis(np.concatenate(labels, axis=-1), order, axis=-1)[:, :-1]
+    label = np.repeat(np.arange(len(axes)), [len(axis.planes) for axis in axes])
+    owner = label[order][:, :-1]
 
     cells, outside = [], np.zeros(owner.shape, np.bool_)
     for i, axis in enumerate(axes):
@@ -174,8 +175,8 @@ def _sorted(axes: list[Axis], length: np.ndarray) -> Segments:
     return Segments(axes, start, between, cells, slack)
 
 
-def _crossings(axis: Axis) -> tuple[Pair, np.ndarray]:
-    """Return where the planes are met, (n, P), and the uncertainty; -inf or inf for rays that run along them."""
+def _crossings(axis: Axis) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the pair of where the planes are met, (n, P), and its uncertainty; +-inf for rays that run along them."""
     alpha, beta = (dd.each(lambda x: x[:, None], pair) for pair in (axis.alpha, axis.beta))
     along = beta[0] == 0
     safe = dd.where(along, dd.pair(1.0), beta)
@@ -185,4 +186,4 @@ def _crossings(axis: Axis) -> tuple[Pair, np.ndarray]:
         uncertainty = UNIT * (np.abs(ahead[0]) + np.abs(alpha[0])) / np.abs(safe[0])
     side = np.where(ahead[0] > 0, np.inf, -np.inf)
     t = dd.where(along, dd.pair(side), t)
-    return t, np.where(along | ~np.isfinite(t[0]), 0.0, uncertainty)
+    return *t, np.where(along | ~np.isfinite(t[0]), 0.0, uncertainty)

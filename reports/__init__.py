@@ -9,12 +9,14 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from fogproof.reports.comparison import write_comparison_page
 from fogproof.reports.files import prepare_folder
+from fogproof.reports.gallery import write_gallery
 from fogproof.reports.junit import write_junit
 from fogproof.reports.page import write_page
 from fogproof.reports.records import SCHEMA, parse_record, read_record, write_csv, write_record
 
-__all__ = ["SCHEMA", "prepare_folder", "read_record", "write_report"]
+__all__ = ["SCHEMA", "prepare_folder", "read_record", "write_comparison", "write_gallery", "write_report"]
 
 
 def write_report(record: dict[str, Any], folder: str | Path) -> Path:
@@ -27,3 +29,14 @@ def write_report(record: dict[str, Any], folder: str | Path) -> Path:
     write_csv(run, folder)
     write_junit(run, folder)
     return write_page(run, folder)
+
+
+def write_comparison(before: dict[str, Any], after: dict[str, Any], folder: str | Path) -> Path:
+    """Write what changed between two records into `folder` and return the path of the page, `comparison.html`.
+
+    The two records stand beside it as `before.json` and `after.json`.
+    """
+    older, newer = parse_record(before, "before"), parse_record(after, "after")
+    write_record(before, folder, "before.json")
+    write_record(after, folder, "after.json")
+    return write_comparison_page(older, newer, Path(folder))

@@ -2,9 +2,10 @@
 "use strict";
 {
   const form = document.getElementById("filter");
-  const rows = [...document.querySelectorAll("tbody tr")];
+  const rows = [...document.querySelectorAll("tr[data-status]")];
   const sections = [...document.querySelectorAll("details.case")];
-  const words = sections.map((section) => {
+  const words = rows.map((row, i) => {
+    const section = sections[i] ?? row;
     const drawings = new Set(section.querySelectorAll("svg"));
     const walker = document.createTreeWalker(section, NodeFilter.SHOW_ELEMENT | NodeFilter.SHOW_TEXT, (node) =>
       drawings.has(node) ? NodeFilter.FILTER_REJECT : NodeFilter.FILTER_ACCEPT);
@@ -21,7 +22,8 @@
     let shown = 0;
     rows.forEach((row, i) => {
       const fits = (!status || row.dataset.status === status) && wanted.every((word) => words[i].includes(word));
-      row.hidden = sections[i].hidden = !fits;
+      row.hidden = !fits;
+      if (sections[i]) sections[i].hidden = !fits;
       shown += fits;
     });
     form.querySelector("output").value = `${shown} of ${rows.length} shown`;

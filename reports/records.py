@@ -118,10 +118,10 @@ def read_record(folder: str | Path) -> dict[str, Any]:
     return cast(dict[str, Any], record)
 
 
-def write_record(record: dict[str, Any], folder: str | Path) -> Path:
-    """Write `record` as `folder/results.json` and return that path. Non-finite numbers become "inf", "-inf", "nan"."""
+def write_record(record: dict[str, Any], folder: str | Path, name: str = RESULTS) -> Path:
+    """Write `record` as `folder/name` and return that path. Non-finite numbers become "inf", "-inf", "nan"."""
     text = json.dumps(jsonable(record), indent=1, ensure_ascii=True, allow_nan=False)
-    return write_file(Path(folder) / RESULTS, text + "\n")
+    return write_file(Path(folder) / name, text + "\n")
 
 
 def write_csv(run: Run, folder: str | Path) -> Path:

@@ -26,15 +26,21 @@ class Resolutions:
     @property
     def size(self) -> tuple[float, float]:
         """Width and height [inch]: a line for each named case."""
-        return 5.6, 1.2 + 0.2 * min(len(self.passes), _NAMED)
+        return 5.6, 0.9 + 0.2 * min(len(self.passes), _NAMED) + 0.22 * len(self._kinds)
+
+    @property
+    def _kinds(self) -> list[str]:
+        return sorted({kind for _, kind, _ in self.passes})
 
     def draw(self, figure: Figure) -> str:
         """Draw one mark a pass, sorted by kind and value, a colour and shape for each kind; names while they fit."""
-        kinds = sorted({kind for _, kind, _ in self.passes})
+        kinds = self._kinds
         rows = sorted(self.passes, key=lambda row: (kinds.index(row[1]), row[2]))
         named = len(rows) <= _NAMED
         height = self.size[1]
-        axes = figure.add_axes((0.42 if named else 0.09, 0.62 / height, 0.54 if named else 0.87, 1 - 1.0 / height))
+        axes = figure.add_axes(
+            (0.42 if named else 0.09, 0.62 / height, 0.54 if named else 0.87, 1 - (0.75 + 0.22 * len(kinds)) / height)
+        )
         looks = [(OBSERVED, "o"), (EXPECTED, "s"), (THIRD, "^"), (OBSERVED, "x"), (EXPECTED, "+")]
         marks: list[Line2D] = []
         for index, kind in enumerate(kinds):
@@ -48,8 +54,8 @@ class Resolutions:
         axes.set_ylim(len(rows) - 0.4, -0.6)
         axes.set_xscale("log")
         axes.set_xlabel("smallest error that would have been caught", x=0.3 if named else 0.5)
-        names = [label(kind, 30) for kind in kinds]
-        figure.legend(marks, names, loc="upper left", ncols=3, borderaxespad=0.1, columnspacing=1, handletextpad=0.2)
+        names = [label(kind, 60) for kind in kinds]
+        figure.legend(marks, names, loc="upper left", borderaxespad=0.1, handletextpad=0.2, labelspacing=0.3)
         values = [value for _, _, value in rows]
         named_kinds = ", ".join(label(kind) for kind in kinds)
         return (

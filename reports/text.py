@@ -19,9 +19,9 @@ def visible(text: str) -> str:
 
 
 def label(text: str, limit: int = 40) -> str:
-    """Return `text` on one line of at most `limit` characters, safe as `visible` makes it, and never empty."""
-    line = " ".join(visible(text[: 4 * limit]).split()) or "(blank)"
-    return line if len(line) <= limit else line[: limit - 1] + "…"
+    """Return `text` on one line, safe as `visible` makes it, never empty; beyond `limit` characters its middle is left out."""
+    line = " ".join(visible(text).split()) or "(blank)"
+    return line if len(line) <= limit else f"{line[: (limit - 1) // 2]}…{line[-(limit // 2) :]}"
 
 
 def _visible(character: str) -> str:

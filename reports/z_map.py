@@ -55,7 +55,7 @@ class ZMap:
         over = np.mean(known > 3)
         return (
             f"Misfit of {z.size} cells in standard deviations; the largest is {z[i, j]:+.3g} at {place}; "
-            f"{over:.1%} of the cells lie beyond 3, of a right sampler's 0.3%."
+            f"{over:.1%} of the cells lie beyond 3, where chance puts about 0.3%."
         )
 
 

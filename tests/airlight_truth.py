@@ -12,7 +12,18 @@ import math
 import mpmath as mp
 from flint import acb, arb, ctx
 
-from fogproof.scene import HenyeyGreenstein, Isotropic, Rayleigh
+from fogproof.scene import (
+    CornetteShanks,
+    DoubleHenyeyGreenstein,
+    Draine,
+    Hazy,
+    HenyeyGreenstein,
+    Isotropic,
+    Mixture,
+    Murky,
+    Rayleigh,
+    Schlick,
+)
 
 BITS = 90
 
@@ -45,14 +56,34 @@ def _arb(x):
 
 
 def phase_factor(phase, mu, analytic=False):
-    """4 pi f_p at the forward cosine mu, textbook form."""
+    """4 pi f_p at the forward cosine mu, textbook form; mu itself for the phase "mu"."""
     match phase:
+        case "mu":
+            return mu
         case Isotropic():
             return acb(1)
-        case HenyeyGreenstein(g):
+        case HenyeyGreenstein(g) | CornetteShanks(g) | Draine(g, _):
             g = arb(g)
             distance = 1 + g * g - 2 * g * mu
-            return (1 - g * g) / (distance * acb(distance).sqrt(analytic=analytic))
+            lobe = (1 - g * g) / (distance * acb(distance).sqrt(analytic=analytic))
+            if isinstance(phase, HenyeyGreenstein):
+                return lobe
+            alpha = arb(getattr(phase, "alpha", 1.0))
+            return lobe * (1 + alpha * mu * mu) / (1 + alpha * (1 + 2 * g * g) / 3)
+        case DoubleHenyeyGreenstein(g1, g2, weight):
+            parts = (HenyeyGreenstein(g1), arb(weight)), (HenyeyGreenstein(g2), 1 - arb(weight))
+            return sum((w * phase_factor(part, mu, analytic) for part, w in parts), acb(0))
+        case Mixture(components, weights):
+            total = sum((arb(w) for w in weights), arb(0))
+            parts = zip(components, weights, strict=True)
+            return sum((arb(w) / total * phase_factor(part, mu, analytic) for part, w in parts), acb(0))
+        case Schlick(k):
+            k = arb(k)
+            return (1 - k * k) / (1 - k * mu) ** 2
+        case Hazy():
+            return arb(0.5) + arb(4.5) * ((1 + mu) / 2) ** 8
+        case Murky():
+            return arb(0.5) + arb(16.5) * ((1 + mu) / 2) ** 32
         case Rayleigh():
             return (1 + mu * mu) * arb(3) / 4
     raise NotImplementedError(phase)

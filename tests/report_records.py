@@ -1,7 +1,9 @@
-"""Records of runs that never happened, for the tests of the reports: every status, every figure, hostile text."""
+"""Records of runs that never happened (every status, every figure, hostile text), and a reader of pages."""
 
 from __future__ import annotations
 
+from html.parser import HTMLParser
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -150,3 +152,37 @@ def typical(passes: int = 34) -> dict[str, Any]:
     cases.append(case("airlight/equiangular", "inconclusive", rng, kind="estimator"))
     cases += [case(f"lecture/{status}", status, rng) for status in ("known", "surprise", "skipped", "error")]
     return record(cases, exit_code=1)
+
+
+VOID = {"meta", "link", "br", "img", "input", "hr"}
+
+
+class Page(HTMLParser):
+    """The elements of a page; opening and closing tags must match."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        self.elements: list[tuple[str, dict[str, str]]] = []
+        self.open: list[str] = []
+        self.words = ""
+        self.html = path.read_text(encoding="utf-8")
+        self.feed(self.html)
+        assert not self.open
+
+    def handle_starttag(self, tag, attributes):
+        self.elements.append((tag, dict(attributes)))
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attributes):
+        self.elements.append((tag, dict(attributes)))
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        if not {"style", "script", "svg"} & set(self.open):
+            self.words += data
+
+    def all(self, wanted):
+        return [attributes for tag, attributes in self.elements if tag == wanted]

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from media_truth import within
 
 from fogproof.analytic import single_scattering
-from fogproof.errors import UnsupportedError
+from fogproof.errors import InvalidValueError
 from fogproof.scene import HenyeyGreenstein, Isotropic, Medium, PointLight, Ray, Rayleigh
 
 coordinates = st.one_of(st.floats(-20, 20), st.floats(-1e-6, 1e-6), st.sampled_from([0.0, 1.0, -3.0, 1e4]))
@@ -126,9 +126,11 @@ def test_nearly_on_the_light_the_error_owns_up():
     assert reference.error >= reference.value
 
 
-def test_what_is_not_known_is_refused():
-    ray, light = Ray([0, 0, 0], [0, 0, 1.0]), PointLight((0, 1, 3.0), 1.0)
-    with pytest.raises(UnsupportedError, match="Medium"):
-        single_scattering("fog", ray, light)
-    with pytest.raises(UnsupportedError, match="PointLight"):
-        single_scattering(Medium(0.0, 1.0), ray, "lamp")
+@pytest.mark.parametrize(
+    ("change", "argument"),
+    [({"medium": "fog"}, "medium"), ({"light": "lamp"}, "light"), ({"ray": 3}, "ray"), ({"shape": "round"}, "shape")],
+)
+def test_bad_input_names_the_argument(change, argument):
+    good = {"medium": Medium(0.0, 1.0), "ray": Ray([0, 0, 0], [0, 0, 1.0]), "light": PointLight((0, 1, 3.0), 1.0)}
+    with pytest.raises(InvalidValueError, match=argument):
+        single_scattering(**(good | change))

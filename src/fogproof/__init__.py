@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from fogproof.contracts import Draw, Draws, Estimator, Reference, Sampler
 from fogproof.domains import Discrete, HalfLine, Interval, RealLine, UnitDisk, UnitHemisphere, UnitSphere, UnitSquare
-from fogproof.errors import FogproofError
+from fogproof.errors import FogproofError, InvalidValueError
 from fogproof.scene import HenyeyGreenstein, Isotropic, Medium, PointLight, Ray, Rayleigh, Scene
 
 if TYPE_CHECKING:
@@ -31,6 +31,7 @@ __all__ = [
     "HalfLine",
     "HenyeyGreenstein",
     "Interval",
+    "InvalidValueError",
     "Isotropic",
     "Medium",
     "PointLight",

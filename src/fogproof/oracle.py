@@ -10,75 +10,81 @@ Numbers may be nested lists, which broadcast. Numbers that JSON lacks are the st
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
-from dataclasses import dataclass
-from functools import cache
-from typing import Any
+from typing import Any, Literal
 
-from fogproof import analytic
-from fogproof.contracts import Reference
 from fogproof.errors import FogproofError, InvalidInputError, shorten
-from fogproof.scene import Isotropic, Medium, PointLight, Ray
-from fogproof.scene.arrays import FloatArray
-from fogproof.scene.files import read_fields
-from fogproof.scene.phase_functions import PhaseFunctionField
-from fogproof.validate import Channels
+from fogproof.quantities import quantities
+from fogproof.scene import Medium
+from fogproof.scene.files import input_model, read_fields
+from fogproof.scene.lights import LIGHTS, PointLight
+from fogproof.scene.media import MEDIA
+from fogproof.scene.occluders import OCCLUDERS
+from fogproof.scene.phase_functions import PHASE_FUNCTIONS
 
 PROTOCOL = "fogproof/oracle/1"
-_FORWARD = "mu is the forward cosine: propagation direction in . propagation direction out"
 
 
-@dataclass(frozen=True)
-class Quantity:
-    """A question the oracle answers: its function, its arguments (type, or (type, default)), unit and convention."""
+def schema() -> dict[str, Any]:
+    """Return the JSON Schema of requests, with those of answers and failures under `$defs`."""
+    from pydantic.json_schema import models_json_schema
 
-    function: Callable[..., Reference]
-    arguments: dict[str, Any]
-    unit: str
-    convention: str
-
-
-@cache
-def quantities() -> dict[str, Quantity]:
-    """Return every quantity by name."""
-    scene = {"medium": Medium, "ray": Ray}
-    radiance = "W/(m^2 sr)"
-    return {
-        "optical_thickness": Quantity(analytic.optical_thickness, scene, "1", "integral of sigma_t along the ray"),
-        "transmittance": Quantity(
-            analytic.transmittance, scene, "1", "fraction of radiance that arrives: exp(-optical thickness)"
-        ),
-        "ambient_fog": Quantity(
-            analytic.ambient_fog,
-            {**scene, "ambient": (Channels, 0.0), "background": (Channels, 0.0)},
-            radiance,
-            "in-scattered radiance and emission constant along the ray; emission is multiplied by sigma_a",
-        ),
-        "single_scattering": Quantity(
-            analytic.single_scattering,
-            {**scene, "light": PointLight},
-            radiance,
-            "airlight alone, without the background; the light's intensity is in W/sr; " + _FORWARD,
-        ),
-        "airlight_integral": Quantity(
-            analytic.airlight_integral,
-            {
-                "sigma_t": FloatArray,
-                "h": FloatArray,
-                "a": FloatArray,
-                "b": FloatArray,
-                "phase": (PhaseFunctionField, Isotropic()),
+    models = {
+        name: input_model({"quantity": Literal[name], "id": (Any, None), **known.arguments})
+        for name, known in quantities().items()
+    }
+    _, document = models_json_schema(
+        [(model, "validation") for model in models.values()], ref_template="#/$defs/{model}"
+    )
+    definitions = document["$defs"]
+    for kind, cls in {
+        **PHASE_FUNCTIONS,
+        **MEDIA,
+        **LIGHTS,
+        **OCCLUDERS,
+    }.items():  # the key that tells the types of a union apart
+        if cls.__name__ in definitions:
+            definition = definitions[cls.__name__]
+            definition["properties"]["kind"] = {"const": kind}
+            if cls not in (Medium, PointLight):  # without a kind a medium is homogeneous, and a light a point
+                definition["required"] = ["kind", *definition.get("required", [])]
+    numbers = {
+        "description": "a number, nested lists of numbers, or the strings inf, -inf and nan for numbers that JSON lacks"
+    }
+    text = {"type": "string"}
+    definitions["answer"] = {
+        "type": "object",
+        "required": ["protocol", "quantity", "value", "error", "unit", "convention", "method", "source"],
+        "properties": {
+            "protocol": {"const": PROTOCOL},
+            "id": {},
+            "quantity": {"enum": list(models)},
+            "value": numbers,
+            "error": numbers,
+            "unit": text,
+            "convention": text,
+            "method": text,
+            "source": text,
+        },
+    }
+    definitions["failure"] = {
+        "type": "object",
+        "required": ["protocol", "error"],
+        "properties": {
+            "protocol": {"const": PROTOCOL},
+            "id": {},
+            "error": {
+                "type": "object",
+                "required": ["code", "message", "path"],
+                "properties": dict.fromkeys(("code", "message", "path"), text),
             },
-            "1/m",
-            "integral over t in [a, b] of exp(-sigma_t ((t - a) + r)) / r^2 4 pi f_p(-t/r), r^2 = t^2 + h^2",
-        ),
-        "phase_pdf": Quantity(analytic.phase_pdf, {"phase": PhaseFunctionField, "mu": FloatArray}, "1/sr", _FORWARD),
-        "phase_cdf": Quantity(
-            analytic.phase_cdf,
-            {"phase": PhaseFunctionField, "mu": FloatArray},
-            "1",
-            "probability that the cosine is <= mu; " + _FORWARD,
-        ),
+        },
+    }
+    references = [{"$ref": f"#/$defs/{model.__name__}"} for model in models.values()]
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": PROTOCOL,
+        "oneOf": references,
+        "$defs": definitions,
     }
 
 
@@ -97,6 +103,7 @@ def answer(request: Any) -> dict[str, Any]:
     arguments = {key: value for key, value in request.items() if key not in ("quantity", "id")}
     result = known.function(**read_fields(known.arguments, arguments, "request"))
     return {
+        "protocol": PROTOCOL,
         **({"id": request["id"]} if "id" in request else {}),
         "quantity": name,
         "value": result.value,
@@ -119,4 +126,4 @@ def answer_text(text: str) -> dict[str, Any]:
         return answer(request)
     except FogproofError as error:
         named = {"id": request["id"]} if isinstance(request, dict) and "id" in request else {}
-        return {**named, "error": error.to_dict()}
+        return {"protocol": PROTOCOL, **named, "error": error.to_dict()}

@@ -7,7 +7,19 @@ from typing import Any
 
 import numpy as np
 
-from fogproof.scene import Scene
+from fogproof.scene import (
+    AnisotropicMedium,
+    AnyMedium,
+    ExponentialMedium,
+    LinearMedium,
+    Medium,
+    OpenGLFog,
+    PiecewiseConstantMedium,
+    Procedural,
+    Scene,
+    VoxelGrid,
+)
+from fogproof.scene.lights import Environment, PointLight, SpotLight, strength
 
 
 @dataclass(frozen=True)
@@ -36,58 +48,108 @@ class Plan:
     def __str__(self) -> str:
         width = max(len(term.name) for term in self.terms)
         lines = [f"{'keep' if term.kept else 'drop'}  {term.name:{width}}  {term.why}" for term in self.terms]
-        return "\n".join(
-            [*lines, f"solver     {self.solver}", f"estimator  {self.estimator or 'none'}", f"           {self.why}"]
-        )
+        solved = [f"solver     {self.solver}", f"estimator  {self.estimator or 'none'}", f"           {self.why}"]
+        return "\n".join(lines + solved)
 
 
 def plan(scene: Scene) -> Plan:
-    """Return the cheapest exact treatment of a scene."""
+    """Return the cheapest exact or unbiased treatment of a scene."""
     medium = scene.medium
-    absorbs, scatters = bool(np.any(medium.sigma_a)), bool(np.any(medium.sigma_s))
-    empty = not (absorbs or scatters)
-    background = bool(np.any(scene.background))
-    reaches = bool(np.any(np.isfinite(scene.ray.length))) or not np.all(medium.sigma_t > 0)
-    emits = bool(np.any(np.multiply(medium.sigma_a, medium.emission)))
-    light = (
-        scene.scattering == "single" and scene.light is not None and bool(np.any(scene.light.intensity)) and scatters
-    )
-    ambient = scene.scattering == "ambient" and bool(np.any(scene.ambient)) and scatters
+    tracking = _TRACKING[type(medium)]
+    empty = not _present(medium)
+    scatters, absorbs = not empty and _any(_scattering(medium)), not empty and _any(_absorption(medium))
+    emits = absorbs and _any(medium.emission)
+    background = _any(scene.background)
+    light = scene.scattering == "single" and scene.light is not None and _any(strength(scene.light)) and scatters
+    ambient = scene.scattering == "ambient" and _any(scene.ambient) and scatters
     terms = (
-        Term(
-            "attenuation", not empty, "sigma_t = 0: T = 1" if empty else "homogeneous: T = exp(-sigma_t s), no tracking"
-        ),
-        Term("background", background and reaches, _background(background, reaches)),
+        Term("attenuation", not empty, "sigma_t = 0: T = 1" if empty else tracking),
+        Term("background", background, "attenuated by T" if background else "its radiance is 0"),
         Term("emission", emits, "sigma_a L_e > 0" if emits else "sigma_a L_e = 0"),
         Term("in-scattering", light or ambient, _in_scattering(scene, scatters, light, ambient)),
         Term("colour", *_colour(scene)),
     )
-    if light:
+    homogeneous = isinstance(medium, Medium)
+    if light and homogeneous and isinstance(scene.light, PointLight | SpotLight):
         return Plan(
             terms,
             "single_scattering",
-            "EquiangularAirlight",
+            "Airlight, placing 'equiangular'",
             "the airlight integral has no elementary form but converges fast after t = h sinh s; equiangular sampling cancels"
             " the light's 1/r^2",
         )
+    if light and homogeneous:
+        why = "in-scattered radiance from outside: the free path places the event, no 1/r^2 is in the way"
+        around = isinstance(scene.light, Environment)
+        estimator = "EnvironmentAirlight" if around else "Airlight, placing 'distance'"
+        return Plan(terms, "single_scattering", estimator, why)
+    if light:
+        why = (
+            "nested adaptive quadrature; equiangular sampling with the transmittance of both legs estimated by tracking"
+        )
+        return Plan(terms, "single_scattering", "equiangular sampling with ratio tracking", why)
     if emits or ambient:
-        return Plan(
-            terms,
-            "ambient_fog",
-            "AnalogFog",
-            "constant sources in a homogeneous medium: the closed lerp, no integral is left",
+        what = (
+            "the closed lerp, no integral is left" if homogeneous else "a lerp over the optical thickness, cell by cell"
         )
+        return Plan(terms, "ambient_fog", "AnalogFog", f"sources that are constant along the ray: {what}")
     if not empty:
-        return Plan(
-            terms, "transmittance", "AnalogTransmittance", "nothing is gained along the ray: the background times T"
-        )
+        estimator = "AnalogTransmittance" if homogeneous else _ESTIMATOR[type(medium)]
+        return Plan(terms, "transmittance", estimator, "nothing is gained along the ray: the background times T")
     return Plan(terms, "the background itself", "", "an empty medium changes nothing: no random numbers at all")
 
 
-def _background(background: bool, reaches: bool) -> str:
-    if not background:
-        return "its radiance is 0"
-    return "attenuated by T" if reaches else "no ray that ends is given: T = 0"
+_TRACKING: dict[type, str] = {
+    Medium: "homogeneous: T = exp(-sigma_t s), no tracking",
+    AnisotropicMedium: "constant along each ray: T = exp(-sigma_t(w) s), no tracking",
+    LinearMedium: "linear extinction: closed form, no tracking",
+    ExponentialMedium: "exponential extinction: closed form, no tracking",
+    OpenGLFog: "a function of the distance from the eye: closed form, no tracking",
+    PiecewiseConstantMedium: "layers: a sum over their boundaries",
+    VoxelGrid: "voxels: a sum over the crossed cells, exact in each",
+    Procedural: "a user's function: tracking under its majorant",
+}
+_ESTIMATOR: dict[type, str] = {
+    AnisotropicMedium: "AnalogTransmittance",
+    LinearMedium: "free paths by the closed inverse",
+    ExponentialMedium: "free paths by the closed inverse",
+    OpenGLFog: "free paths by the closed inverse",
+    PiecewiseConstantMedium: "regular tracking",
+    VoxelGrid: "regular tracking",
+    Procedural: "ratio tracking",
+}
+
+
+def _any(value: Any) -> bool:
+    """Return whether a coefficient is anywhere above 0; a function is taken to be."""
+    return callable(value) or bool(np.any(value))
+
+
+def _present(medium: AnyMedium) -> bool:
+    match medium:
+        case Medium() | PiecewiseConstantMedium() | VoxelGrid():
+            return bool(np.any(medium.sigma_t))
+        case LinearMedium():
+            return bool(np.any(np.greater(medium.sigma_0, 0))) or bool(np.any(medium.gradient))
+        case ExponentialMedium():
+            return bool(np.any(medium.sigma_0))
+        case AnisotropicMedium():
+            return bool(np.any(medium.sigma)) and bool(np.any(medium.S))
+        case OpenGLFog(mode="linear"):
+            return True
+        case OpenGLFog():
+            return bool(medium.density)
+    return True
+
+
+def _scattering(medium: AnyMedium) -> Any:
+    return medium.sigma_s if isinstance(medium, Medium) else medium.albedo
+
+
+def _absorption(medium: AnyMedium) -> Any:
+    if isinstance(medium, Medium):
+        return medium.sigma_a
+    return medium.albedo if callable(medium.albedo) else np.subtract(1.0, medium.albedo)
 
 
 def _in_scattering(scene: Scene, scatters: bool, light: bool, ambient: bool) -> str:
@@ -96,16 +158,15 @@ def _in_scattering(scene: Scene, scatters: bool, light: bool, ambient: bool) -> 
     if scene.scattering == "none":
         return "scattering = 'none'"
     if light:
-        return f"one bounce from the light, phase function {type(scene.medium.phase).__name__}"
+        shadows = f", shadows of {len(scene.occluders)} occluders" if scene.occluders else ""
+        return f"one bounce from the {type(scene.light).__name__}, phase function {type(scene.medium.phase).__name__}{shadows}"
     if ambient:
         return "constant in-scattered radiance: the phase function integrates to 1 and drops out"
-    return "the light has intensity 0" if scene.scattering == "single" else "the ambient radiance is 0"
+    return "the light is off" if scene.scattering == "single" else "the ambient radiance is 0"
 
 
 def _colour(scene: Scene) -> tuple[bool, str]:
-    light = scene.light.intensity if scene.light else 0.0
-    values = [scene.medium.sigma_a, scene.medium.sigma_s, scene.medium.emission, scene.ambient, scene.background, light]
-    counts = {len(value) for value in values if isinstance(value, tuple)}
-    if not counts:
-        return False, "grey: one channel"
-    return True, f"{counts.pop()} channels"
+    values = [scene.ambient, scene.background, strength(scene.light) if scene.light else 0.0]
+    counts = {len(value) for value in values if isinstance(value, tuple)} | {scene.medium.channels}
+    counts -= {None}
+    return (True, f"{counts.pop()} channels") if counts else (False, "grey: one channel")

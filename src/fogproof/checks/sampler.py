@@ -89,21 +89,22 @@ def check_sampler(
         samples = min(samples, _samples_for(resolution, share))
 
     pilot = _pilot(subject, seed)
+    rounding = integral_slack(subject, pilot)
     findings: list[Finding] = []
     if dimensions is not None and dimensions <= _MOST_DIMENSIONS_AT_EDGES:
         findings.append(edge_uniforms(subject))
     if isinstance(domain, Discrete):
         coordinates, cells = _discrete(subject)
         edges_shown = cells.edges
-        findings.append(normalisation(subject, cells, pilot))
+        findings.append(normalisation(subject, cells, rounding))
     else:
-        chart, coordinates, cells, more = _continuous(subject, pilot, samples)
+        chart, coordinates, cells, chart_cells, more = _continuous(subject, pilot, samples, rounding)
         findings += more
         edges_shown = cells.edges if len(cells.edges) > 1 else (_shown(chart, cells.edges[0]),)
         if axis is not None and mean_cosine is not None:
-            findings.append(integral("mean cosine", subject, chart, cells, pilot, "pdf", mean_cosine))
+            findings.append(integral("mean cosine", subject, chart, chart_cells, rounding, "pdf", mean_cosine))
         if eval is not None and albedo is not None:
-            findings.append(integral("albedo", subject, chart, cells, pilot, "eval", albedo))
+            findings.append(integral("albedo", subject, chart, chart_cells, rounding, "eval", albedo))
     if reference is not None and len(pilot):
         findings.append(reference_agreement(subject, pilot))
 
@@ -176,9 +177,12 @@ def _discrete(subject: Subject) -> tuple[Callable[[np.ndarray], np.ndarray], Cel
 
 
 def _continuous(
-    subject: Subject, pilot: np.ndarray, samples: int
-) -> tuple[Chart, Callable[[np.ndarray], np.ndarray], Cells, list[Finding]]:
-    """Return the chart, the map from points to cell coordinates, the cells, and the findings about pdf and cdf alone."""
+    subject: Subject, pilot: np.ndarray, samples: int, rounding: float
+) -> tuple[Chart, Callable[[np.ndarray], np.ndarray], Cells, Cells, list[Finding]]:
+    """Return the chart, the map from points to cell coordinates, the cells, and the findings about pdf and cdf alone.
+
+    The cells come twice: those that samples are counted in, and those of the chart, over which functions are integrated.
+    """
     chart = chart_of(subject.domain, pilot, subject.axis)
     edges = pilot_edges(chart, chart.from_point(pilot), samples)
 
@@ -186,9 +190,9 @@ def _continuous(
         return subject.density(chart.to_point(c)) * chart.jacobian(c)
 
     with np.errstate(all="ignore"):  # an infinite or undefined density is found, not warned of
-        tolerance = 0.05 * integral_slack(subject, pilot)
-        cells = cells_by_quadrature(chart_density, edges, chart.labels, tolerance, BUDGET)
-    findings = [normalisation(subject, cells, pilot)]
+        tolerance, budget = 0.1 * rounding, BUDGET[subject.precision]
+        chart_cells = cells = cells_by_quadrature(chart_density, edges, chart.labels, tolerance, budget)
+    findings = [normalisation(subject, cells, rounding)]
     coordinates = chart.from_point
     if subject.cdf is not None and len(edges) == 1:
         mass = _line_masses(subject, chart, edges[0])
@@ -202,7 +206,7 @@ def _continuous(
         def coordinates(x: np.ndarray) -> np.ndarray:
             return numbers("cdf(x)", call("cdf(x)", rosenblatt, x), (len(x), 2))
 
-    return chart, coordinates, cells, findings
+    return chart, coordinates, cells, chart_cells, findings
 
 
 def _line_masses(subject: Subject, chart: Chart, edges: np.ndarray) -> np.ndarray:

@@ -10,12 +10,13 @@ import click
 
 from fogproof.checks import jsonable
 from fogproof.errors import InvalidInputError
-from fogproof.oracle import answer_text
+from fogproof.oracle import answer_text, schema
 
 
 @click.command("oracle")
-@click.argument("request", metavar="REQUEST.json|-")
-def command(request: str) -> int:
+@click.argument("request", metavar="REQUEST.json|-", required=False)
+@click.option("--schema", "as_schema", is_flag=True, help="Print the JSON Schema of requests and answers instead.")
+def command(request: str | None, as_schema: bool) -> int:
     """Answer JSON requests with reference values and error bounds, one answer a line.
 
     REQUEST.json holds one JSON object, or one a line; '-' reads lines from stdin and answers each at once.
@@ -23,11 +24,17 @@ def command(request: str) -> int:
     \b
     Example:  echo '{"quantity": "phase_pdf", "phase": {"kind": "rayleigh"}, "mu": [-1, 0, 1]}' | fogproof oracle -
     """
+    if as_schema:
+        click.echo(json.dumps(schema(), indent=1))
+        return 0
+    if request is None:
+        raise click.UsageError("give a REQUEST.json, '-' for lines on stdin, or --schema")
     bad = False
     for text in _requests(request):
         reply = jsonable(answer_text(text))
         bad = bad or ("error" in reply and "value" not in reply)
         click.echo(json.dumps(reply))
+        sys.stdout.flush()  # whoever writes one line and waits must get its answer
     return 2 if bad else 0
 
 

@@ -9,7 +9,21 @@ from fogproof.scene.graded_media import (
 from fogproof.scene.lights import PointLight
 from fogproof.scene.media import AnyMedium, Medium
 from fogproof.scene.opengl_fog import OpenGLFog
-from fogproof.scene.phase_functions import HenyeyGreenstein, Isotropic, PhaseFunction, Rayleigh
+from fogproof.scene.phase_functions import (
+    CornetteShanks,
+    DoubleHenyeyGreenstein,
+    Draine,
+    Hazy,
+    HenyeyGreenstein,
+    Isotropic,
+    Mie,
+    Mixture,
+    Murky,
+    PhaseFunction,
+    Rayleigh,
+    Schlick,
+    Tabulated,
+)
 from fogproof.scene.procedural import Procedural
 from fogproof.scene.rays import Ray
 from fogproof.scene.scenes import Scattering, Scene
@@ -19,11 +33,18 @@ from fogproof.scene.voxel_grid import VoxelGrid
 __all__ = [
     "AnisotropicMedium",
     "AnyMedium",
+    "CornetteShanks",
+    "DoubleHenyeyGreenstein",
+    "Draine",
     "ExponentialMedium",
+    "Hazy",
     "HenyeyGreenstein",
     "Isotropic",
     "LinearMedium",
     "Medium",
+    "Mie",
+    "Mixture",
+    "Murky",
     "OpenGLFog",
     "PhaseFunction",
     "PiecewiseConstantMedium",
@@ -34,6 +55,8 @@ __all__ = [
     "Rayleigh",
     "Scattering",
     "Scene",
+    "Schlick",
+    "Tabulated",
     "VaryingPhase",
     "VoxelGrid",
 ]

@@ -43,10 +43,15 @@ def read_fields(types: dict[str, Any], data: Any, origin: str) -> dict[str, Any]
     if not isinstance(data, dict):
         raise InvalidInputError(f"{origin}: must be a table of keys, got {shorten(data)}")
     try:
-        model = _model(tuple(types.items())).model_validate_json(json.dumps(_with_infinities(data)))
+        model = input_model(types).model_validate_json(json.dumps(_with_infinities(data)))
     except pydantic.ValidationError as error:
         raise _complaint(error, data, origin) from None
     return {name: getattr(model, name) for name in types}
+
+
+def input_model(types: dict[str, Any]) -> Any:
+    """Return the pydantic model of an object with these keys; see `read_fields`."""
+    return _model(tuple(types.items()))
 
 
 @cache
@@ -54,7 +59,10 @@ def _model(types: tuple[tuple[str, Any], ...]) -> Any:
     import pydantic
 
     fields: dict[str, Any] = {name: kind if isinstance(kind, tuple) else (kind, ...) for name, kind in types}
-    return pydantic.create_model("Input", __config__=pydantic.ConfigDict(extra="forbid", strict=True), **fields)
+    name = "".join(
+        str(part).title().replace("_", "") for part in getattr(fields.get("quantity", ("",))[0], "__args__", ("Input",))
+    )
+    return pydantic.create_model(name, __config__=pydantic.ConfigDict(extra="forbid", strict=True), **fields)
 
 
 def _with_infinities(value: Any) -> Any:

@@ -89,9 +89,9 @@ class PiecewiseConstantMedium:
     boundaries: FloatArray
     sigma_t: FloatArray
     axis: FloatArray = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))
-    albedo: FloatArray = 0.0  # type: ignore[assignment]  # __post_init__ makes it an array
+    albedo: FloatArray = 0.0
     phase: AnyPhaseField = field(default_factory=Isotropic)
-    emission: FloatArray = 0.0  # type: ignore[assignment]
+    emission: FloatArray = 0.0
 
     def __post_init__(self) -> None:
         boundaries = as_float_array("boundaries", self.boundaries)

@@ -37,7 +37,7 @@ class OpenGLFog:
     density: float = 1.0
     start: float = 0.0
     end: float = 1.0
-    eye: FloatArray = (0.0, 0.0, 0.0)  # type: ignore[assignment]  # __post_init__ makes it an array
+    eye: FloatArray = (0.0, 0.0, 0.0)
     albedo: Channels = 1.0
     phase: AnyPhaseField = field(default_factory=Isotropic)
     emission: Channels = 0.0

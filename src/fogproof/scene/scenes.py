@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 from fogproof.errors import InvalidValueError
-from fogproof.scene.lights import PointLight
+from fogproof.scene.lights import Light, LightField, strength
 from fogproof.scene.media import AnyMedium, AnyMediumField
+from fogproof.scene.occluders import Occluder, OccluderField
 from fogproof.scene.rays import Ray
 from fogproof.validate import Channels, channel_count, nonnegative_channels
 
@@ -20,7 +21,8 @@ class Scene:
     """What a camera ray sees.
 
     scattering  how far in-scattering is followed: "none", "ambient" or "single"
-    light       needed by "single"
+    light       needed by "single": point, spot or directional light, or a constant environment
+    occluders   what stands between the light and the ray; the camera sees past it
     ambient     in-scattered radiance L_i [W/(m^2 sr)] that "ambient" takes as constant
     background  radiance of the surface at the ray's end [W/(m^2 sr)]
     """
@@ -28,7 +30,8 @@ class Scene:
     medium: AnyMediumField
     ray: Ray
     scattering: Scattering = "none"
-    light: PointLight | None = None
+    light: LightField | None = None
+    occluders: tuple[OccluderField, ...] = ()
     ambient: Channels = 0.0
     background: Channels = 0.0
 
@@ -44,11 +47,19 @@ class Scene:
                 None,
                 "add a [light] table, or set scattering = 'none'",
             )
+        for occluder in self.occluders:
+            if not isinstance(occluder, Occluder):
+                raise InvalidValueError("occluders", "must be spheres and disks", occluder)
+        object.__setattr__(self, "occluders", tuple(self.occluders))
+        if self.light is not None and not isinstance(self.light, Light):
+            raise InvalidValueError(
+                "light", "must be a light", self.light, "for example PointLight(position, intensity)"
+            )
         if not isinstance(self.medium, AnyMedium):
             raise InvalidValueError("medium", "must be a medium", self.medium, "for example Medium(sigma_a, sigma_s)")
         channel_count(
             medium=(0.0,) * self.medium.channels if self.medium.channels else 0.0,
-            intensity=self.light.intensity if self.light else 0.0,
+            light=strength(self.light) if self.light else 0.0,
             ambient=self.ambient,
             background=self.background,
         )

@@ -39,7 +39,7 @@ from fogproof.scene.voxel_grid import VoxelGrid
 from fogproof.validate import number
 
 _HEADER = struct.Struct("<3sBi4i6f")
-_ENCODINGS = {1: (np.dtype("<f4"), 1.0), 3: (np.dtype("u1"), 1 / 255)}
+_ENCODINGS: dict[int, tuple[np.dtype[Any], float]] = {1: (np.dtype("<f4"), 1.0), 3: (np.dtype("u1"), 1 / 255)}
 
 
 def read_voxel_grid(

@@ -33,9 +33,9 @@ class VoxelGrid:
     lower: FloatArray
     upper: FloatArray
     interpolation: Interpolation = "trilinear"
-    albedo: FloatArray = 0.0  # type: ignore[assignment]  # __post_init__ makes it an array
+    albedo: FloatArray = 0.0
     phase: AnyPhaseField = field(default_factory=Isotropic)
-    emission: FloatArray = 0.0  # type: ignore[assignment]
+    emission: FloatArray = 0.0
 
     def __post_init__(self) -> None:
         sigma_t = as_float_array("sigma_t", self.sigma_t)

@@ -1,0 +1,214 @@
+"""The airlight integral by Gauss-Legendre quadrature in s = asinh(t/h): full accuracy everywhere.
+
+    I = int_a^b exp(-sigma_t ((t - a) + r)) / r^2  4 pi f_p(-t/r) dt,    r^2 = t^2 + h^2          [1/m]
+
+t is measured along the ray from the foot of the perpendicular from the light, whose distance is h; the camera is at a.
+
+Method. With t = h sinh s the integrand becomes exp(-sigma_t (w - a)) 4 pi f_p / r ds, w = t + r = h e^s, which is
+analytic in |Im s| < pi/2 for every h, sigma_t and g: Gauss-Legendre on panels at most 3 wide converges uniformly. All
+lengths are taken relative to an anchor s0 near the largest integrand, w = w0 e^u and wt = r - t = wt0 e^-u, so that
+nothing cancels and h = 0 is no special case. The anchor is the start of the segment, its end, or
+e^s0 = 1/(1 + sigma_t h), close to the maximum of the isotropic integrand, where it lies inside.
+
+Window. Without the phase function log(integrand) is concave in s. Where it has fallen by K below its value at the
+anchor, the chord continued bounds the tail by e^-K / (1 - e^-K) of the integral; a phase function changes that ratio
+by at most max f_p / min f_p. So K = 40 + log(max f_p / min f_p) leaves out less than 1e-17 on each side.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from fogproof.analytic.airlight_phase import AirlightPhase
+from fogproof.analytic.airlight_segments import Segments, cut
+from fogproof.analytic.error_free import EPS, TINY, two_prod, two_sum
+from fogproof.analytic.gauss_legendre import NODES, WEIGHTS
+from fogproof.analytic.vectors import norm
+
+PANEL = 3.0
+"""Largest width of a panel in s: 28 nodes then leave a relative error below 1e-16 (Bernstein ellipse, |Im s| < 1.5)."""
+
+DEPTH = 50.0
+"""Largest number of e-folds of the attenuation in a panel, for the same bound."""
+
+TAIL = 40.0
+"""How many e-folds below the anchor the window ends."""
+
+ROUNDING = 28.0
+"""Relative error [eps] of the sum without the phase function: u (10), w, wt and r (5), two exponentials (4), the sum of
+positive terms (5), the attenuation up to the anchor (4)."""
+
+BLOCK = 1024
+"""Panels evaluated at a time: 28 nodes each, so that the temporaries stay in the cache."""
+
+METHOD = "Gauss-Legendre 28 in asinh(t/h)"
+SOURCE = "Sun et al. 2005, eq. 5, with t = h sinh s; tails bounded by log-concavity"
+
+
+class Gain(NamedTuple):
+    """A further factor of the integrand, in [0, 1].
+
+    factor  (w, wt, segment) -> (28, m): w and wt (28, m) of nodes on the segments with those numbers, (m,)
+    degree  how many factors tanh s and sech s the formula multiplies
+    eps     bound of its error, in units of 2^-52
+    """
+
+    factor: Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
+    degree: int
+    eps: float
+
+    def of(self, owner: np.ndarray) -> Gain:
+        """Return the factor of pieces, given the segments they come from."""
+        return self._replace(factor=lambda w, wt, piece: self.factor(w, wt, owner[piece]))
+
+
+def integrate(segments: Segments, phase: AirlightPhase, gain: Gain | None = None) -> tuple[np.ndarray, np.ndarray]:
+    """Return the integral over each segment and a bound of its error, (n,) both; inf where the light is on it."""
+    if phase.kinks.size:
+        return _between_kinks(segments, phase, gain)
+    exact = phase.absolute == 0 and phase.floor > 0 and not phase.noisy and gain is None
+    with np.errstate(all="ignore"):
+        # Where F reaches 0 the tails are bounded by its peak, and counted against the integral without it.
+        window = _window(segments, TAIL + (phase.spread if phase.floor > 0 else np.log(max(phase.peak, 1))))
+        sums, plain, noise = _sums(window, phase, gain, exact)
+        half = np.exp(-0.5 * window.path)  # in two halves: a large sum may bring back what exp(-path) would lose
+        arrives = half * (1 - window.path_low)
+        value = (sums * arrives) * half
+        error = (ROUNDING + phase.eps) * EPS * value + 4 * TINY
+        if not exact:
+            error += (
+                ((phase.absolute + 1 + (gain.eps * phase.peak if gain else 0)) * EPS * plain + noise) * arrives * half
+            )
+    on_light = (segments.h == 0) & (segments.start <= 0) & (segments.end >= 0) & (segments.length > 0)
+    value[on_light], error[on_light] = np.inf, 0.0
+    return value, error
+
+
+def _between_kinks(segments: Segments, phase: AirlightPhase, gain: Gain | None) -> tuple[np.ndarray, np.ndarray]:
+    """Return the integral as a sum over the pieces on which the phase function is smooth."""
+    mu, smooth = phase.kinks, phase._replace(kinks=np.empty(0))
+    count = len(segments.h)
+    value, error = np.empty((2, count))
+    step = max(1, 65536 // len(mu))
+    for i in range(0, count, step):
+        block = slice(i, i + step)
+        some = Segments(*(x[block] for x in segments))
+        with np.errstate(all="ignore"):
+            pieces, owner = cut(some, -some.h[:, None] * (mu / np.sqrt((1 - mu) * (1 + mu))))
+        parts = integrate(pieces, smooth, gain.of(owner + i) if gain else None)
+        value[block], error[block] = (np.bincount(owner, part, len(some.h)) for part in parts)
+    return value, np.where(value < np.inf, error + len(mu) * EPS * value, 0.0)
+
+
+class Window(NamedTuple):
+    """What is left to integrate, each (n,): exp(-path) int_low^high exp(-k expm1(u)) 4 pi f_p 2/(w + wt) du.
+
+    w = w0 e^u, wt = wt0 e^-u; sigma times the length of the path camera - anchor - light is path + path_low.
+    """
+
+    k: np.ndarray
+    w0: np.ndarray
+    wt0: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    path: np.ndarray
+    path_low: np.ndarray
+
+
+def _window(segments: Segments, tail: float) -> Window:
+    """Choose the anchor, and the part of the segment around it that counts: nothing where nothing arrives."""
+    sigma, sigma_low, h, h_low, camera, camera_low, a, b, length = segments
+    ra, rb = np.hypot(a, h), np.hypot(b, h)
+    wa, wta = _w(a, ra, h), _w(-a, ra, h)
+    wb, wtb = _w(b, rb, h), _w(-b, rb, h)
+    H = sigma * h
+    depth = np.log1p(H)  # the maximum of the isotropic integrand is near s = -depth
+    w0, wt0 = h / (1 + H), h * (1 + H)
+
+    at_start = wta <= np.e * wt0
+    at_end = ~at_start & (wtb >= wt0)
+    inside = ~(at_start | at_end)
+    w0 = np.where(at_start, wa, np.where(at_end, wb, w0))
+    wt0 = np.where(at_start, wta, np.where(at_end, wtb, wt0))
+    k = sigma * w0
+
+    # Distances in s from the anchor to the ends. Between the ends: log1p of the difference over the smaller, so that a
+    # short segment keeps its relative accuracy. An anchor inside is more than 1 from the start: log will do.
+    ratio = (length / (ra + rb)) * np.where(at_start, (wa + wb) / wa, (wta + wtb) / wtb)
+    across = np.where(b < np.inf, np.log1p(ratio), np.inf)
+    to_start = np.where(inside, np.log(wta / wt0), across)
+    to_end = np.where(inside, np.maximum(np.log(wb / w0), 0.0), across)
+    low = np.where(at_start, 0.0, -np.minimum(to_start, tail + 1.7))
+    high = np.minimum(to_end, tail + 2.7 + 2 * depth)
+    high = np.minimum(high, np.log1p((tail + 1.7 + depth) / k))
+    high = np.where(at_end, 0.0, high)
+
+    # Path camera - anchor - light: r_a and the way to a where the anchor is the start, else w0 - camera, both positive.
+    before, before_low = two_sum(a, -camera)
+    start, start_low = norm((a, h), (np.where(before > 0, 0.0, camera_low), h_low))
+    path, path_low = two_sum(np.where(at_start, start, w0), np.where(at_start, before, -camera))
+    path_low += np.where(at_start, start_low + before_low, 0.0)
+    path_low -= np.where(at_start & (before == 0), 0.0, camera_low)
+    tau, tau_low = two_prod(sigma, path)
+    tau_low = tau_low + sigma * path_low + sigma_low * path
+
+    nothing = (length == 0) | ~(tau < 4096)  # exp(-4096) / r is 0 for every r > 0 there is
+    for x, replacement in ((k, 1.0), (w0, 1.0), (wt0, 1.0), (low, 0.0), (high, 0.0), (tau, 0.0), (tau_low, 0.0)):
+        x[nothing] = replacement
+    return Window(k, w0, wt0, low, high, tau, tau_low)
+
+
+def _w(a: np.ndarray, r: np.ndarray, h: np.ndarray) -> np.ndarray:
+    """Return r + a without cancellation; r = hypot(a, h)."""
+    return np.where(a >= 0, r + a, h * (h / (r - a)))
+
+
+def _sums(
+    window: Window, phase: AirlightPhase, gain: Gain | None, exact: bool
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the integral over u for each segment, panel by panel in blocks.
+
+    With it the same without phase function and gain, and the integral of the error of the phase function, each (n,);
+    zeros if `exact`.
+    """
+    k, w0, wt0, low, high, _, _ = window
+    panel = PANEL / (1 + (phase.degree + (gain.degree if gain else 0)) / 8)
+    fall = k * np.expm1(high)
+    below = np.ceil(-low / panel).astype(np.intp)
+    above = np.ceil(np.maximum(high / panel, fall / DEPTH)).astype(np.intp)
+    above = np.maximum(above, below == 0)
+    first = np.cumsum(below + above) - below - above
+    total = int((below + above).sum())
+    owner = np.repeat(np.arange(len(k)), below + above)
+    # Edges count from the anchor, where the integrand is large: an edge is off by half an EPS of its distance from there,
+    # and not of the length of the whole window.
+    step = np.arange(total) - (first + below)[owner]
+    width = np.where(step < 0, (-low / np.maximum(below, 1))[owner], (high / np.maximum(above, 1))[owner])
+    left = step * width
+    parts = np.zeros((3, total))
+    for i in range(0, total, BLOCK):
+        block = slice(i, i + BLOCK)
+        own = owner[block]
+        u = NODES[:, None] * width[block] + left[block]
+        grow = np.exp(u)
+        w, wt = w0[own] * grow, wt0[own] / grow
+        f = np.exp(np.expm1(u) * -k[own]) / (w + wt)
+        if not exact:
+            parts[1, block] = WEIGHTS @ f
+        if gain is not None:
+            f *= gain.factor(w, wt, own)
+        if phase.factor is not None:
+            factor = phase.factor(w, wt)
+            if phase.noisy:
+                factor, noise = factor
+                parts[2, block] = WEIGHTS @ (f * noise)
+            f *= factor
+        parts[0, block] = WEIGHTS @ f
+    parts *= 2 * width
+    if total > len(k):
+        parts = np.add.reduceat(parts, first, axis=1)
+    sums, plain, noise = parts
+    return sums, plain, noise

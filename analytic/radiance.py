@@ -1,0 +1,35 @@
+"""What a camera ray sees in a scene: background, emission and in-scattering together."""
+
+from __future__ import annotations
+
+from fogproof.analytic.ambient_fog import ambient_fog
+from fogproof.analytic.single_scattering import single_scattering
+from fogproof.contracts import Reference
+from fogproof.scene import Scene
+
+
+def radiance(scene: Scene) -> Reference:
+    """Return the radiance that reaches the camera [W/(m^2 sr)], shape R or R + (channels,).
+
+        L = T L_bg + int T sigma_a L_e dt + int T sigma_s L_s dt
+
+    with the in-scattered radiance L_s that `scene.scattering` names: none, a constant, or one bounce from the light. The error is
+    the sum of the parts'. Source: Chandrasekhar 1960, Radiative Transfer, section 7.
+    """
+    ambient = scene.ambient if scene.scattering == "ambient" else 0.0
+    direct = ambient_fog(scene.medium, scene.ray, ambient, scene.background)
+    if scene.scattering != "single":
+        return direct
+    assert scene.light is not None  # a Scene sees to it
+    airlight = single_scattering(scene.medium, scene.ray, scene.light, occluders=scene.occluders)
+    if direct.value.ndim < airlight.value.ndim:  # a grey medium and background under a coloured light
+        direct = Reference(direct.value[..., None], direct.error[..., None], direct.method, direct.source)
+    elif airlight.value.ndim < direct.value.ndim:
+        airlight = Reference(airlight.value[..., None], airlight.error[..., None], airlight.method, airlight.source)
+    value = direct.value + airlight.value
+    return Reference(
+        value,
+        direct.error + airlight.error + 2.3e-16 * value,
+        f"{direct.method}; {airlight.method}",
+        f"{direct.source}; {airlight.source}",
+    )

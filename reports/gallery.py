@@ -1,0 +1,56 @@
+"""Pictures of the theory, made by the functions that the checks prove: the oracle's curves, the estimators' points."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from fogproof.checks import batch_generator
+from fogproof.reports.files import write_file
+from fogproof.reports.gallery_airlight import FoggyScene, Glow, SamplesAroundALight
+from fogproof.reports.gallery_media import Fog, Transmittances
+from fogproof.reports.gallery_phase import Approximation, Linear, Polar, SphereSizes
+from fogproof.reports.gallery_sky import SkyAndSunset
+from fogproof.reports.pictures import Drawing, Picture, render
+from fogproof.reports.templates import fill
+
+
+def drawings(seed: int) -> dict[str, tuple[str, Drawing]]:
+    """Return file name -> (title, drawing); each draws from a random stream of its own."""
+
+    def stream(name: str) -> np.random.Generator:
+        return batch_generator(seed, f"gallery/{name}", 0, 0)
+
+    return {
+        "phase-polar": ("Phase functions", Polar()),
+        "phase-henyey-greenstein": ("Henyey-Greenstein, sampled", Linear(stream("linear"))),
+        "phase-schlick": ("Henyey-Greenstein and Schlick", Approximation()),
+        "phase-mie": ("Lorenz-Mie at three sizes", SphereSizes()),
+        "transmittance": ("Transmittance of each medium", Transmittances(stream("transmittance"))),
+        "fog": ("Fog over distance", Fog(stream("fog"))),
+        "foggy-scene": ("A scene in fog", FoggyScene()),
+        "samples-around-a-light": ("Samples around a light", SamplesAroundALight(stream("samples"))),
+        "glow": ("The glow of a light", Glow(stream("glow"))),
+        "sky-and-sunset": ("Blue sky, red sunset", SkyAndSunset(stream("sky"))),
+    }
+
+
+def write_gallery(folder: str | Path, seed: int = 0) -> Path:
+    """Write `folder/gallery.html` and its pictures as `folder/figures/*.png` and `*.svg`; return the page's path."""
+    folder = Path(folder)
+    pictures: list[tuple[str, Picture]] = []
+    for name, (title, drawing) in drawings(seed).items():
+        picture = render(drawing, name)
+        picture.save(folder / "figures")
+        pictures.append((title, picture))
+    page = fill(
+        "gallery.html",
+        kind="gallery",
+        pictures=pictures,
+        seed=seed,
+        command=f"python -c \"import fogproof.reports as r; r.write_gallery('gallery', seed={seed})\"",
+        headline=("Light in fog, in pictures", f"{len(pictures)} pictures, seed {seed}"),
+        tone="plain",
+    )
+    return write_file(folder / "gallery.html", page)

@@ -1,0 +1,75 @@
+"""Templates of pages: escaping everywhere, text made visible, one style and one script inside each page."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fogproof.reports.text import anchor, label, visible
+
+if TYPE_CHECKING:
+    import jinja2
+
+_STATUSES = {"surprise": "!", "rejected": "✗", "error": "⚠", "inconclusive": "?", "known": "⚑", "skipped": "–"}
+_CHANGES = {"worse": "✗", "mended": "✓", "changed": "≠", "new": "+", "gone": "–", "same": "="}
+_MARKS = _STATUSES | {"passed": "✓"} | _CHANGES
+
+
+def fill(template: str, **values: Any) -> str:
+    """Return the page that `template` makes of `values`; text among them is shown as it is, whatever it holds."""
+    script = _asset("page.js")
+    allowed = "sha256-" + base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    page = _environment().get_template(template)
+    return page.render(style=_asset("page.css"), script=script, script_hash=allowed, **values)
+
+
+@cache
+def _environment() -> jinja2.Environment:
+    import jinja2
+
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(Path(__file__).parent),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        finalize=lambda value: visible(value) if type(value) is str else value,
+    )
+    environment.globals["marks"] = _MARKS
+    environment.filters |= {
+        "anchor": anchor,
+        "label": label,
+        "number": number,
+        "grouped": grouped,
+        "sentence": sentence,
+        "cases": cases,
+    }
+    return environment
+
+
+@cache
+def _asset(name: str) -> str:
+    return (Path(__file__).parent / name).read_text(encoding="utf-8")
+
+
+def number(value: float | None) -> str:
+    """Return three digits of `value`, a dash for None."""
+    return "–" if value is None else f"{value:.3g}"
+
+
+def grouped(value: float) -> str:
+    """Return a count with thin spaces between thousands."""
+    return f"{value:,.0f}".replace(",", "\N{NARROW NO-BREAK SPACE}")
+
+
+def sentence(text: str) -> str:
+    """Return `text` with a capital and a full stop."""
+    return text[:1].upper() + text[1:] + ("" if text.endswith((".", "!", "?")) else ".")
+
+
+def cases(n: int) -> str:
+    """Return "1 case", "2 cases"."""
+    return "1 case" if n == 1 else f"{n} cases"

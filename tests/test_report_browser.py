@@ -1,0 +1,235 @@
+"""In a real browser the page shows its figures, filters, opens what the address names, asks the network for nothing,
+fits a narrow screen and has no serious barrier for anyone; with scripts switched off it is complete as well.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+from importlib import resources
+
+import pytest
+from report_records import HOSTILE, case, record, typical
+
+from fogproof.reports import write_comparison, write_gallery, write_report
+
+webdriver = pytest.importorskip("selenium.webdriver", reason="selenium is not installed: pip install --group test")
+CHROMIUM, DRIVER = (shutil.which(name) for name in ("chromium", "chromedriver"))
+if not (CHROMIUM and DRIVER):
+    pytest.skip("no browser: apt-get install chromium chromium-driver", allow_module_level=True)
+
+from selenium.webdriver.common.by import By  # noqa: E402
+from selenium.webdriver.common.keys import Keys  # noqa: E402
+from selenium.webdriver.support.wait import WebDriverWait  # noqa: E402
+
+
+def start(profile, scripts=True):
+    options = webdriver.ChromeOptions()
+    options.binary_location = CHROMIUM
+    switches = "headless no-sandbox disable-gpu disable-quic disable-dev-shm-usage no-first-run disable-sync"
+    switches += " disable-background-networking disable-component-update"
+    for switch in [*switches.split(), f"user-data-dir={profile}", "window-size=1200,900"]:
+        options.add_argument(f"--{switch}")
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    if not scripts:
+        options.add_experimental_option("prefs", {"profile.managed_default_content_settings.javascript": 2})
+    driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(executable_path=DRIVER))
+    driver.set_page_load_timeout(60)
+    driver.set_script_timeout(60)
+    return driver
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory):
+    driver = start(tmp_path_factory.mktemp("profile"))
+    yield driver
+    driver.quit()
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory):
+    cases = [
+        case(text, status, **dict.fromkeys(("title", "reason", "source", "reference", "twin", "reproduce"), text))
+        for text, status in zip(HOSTILE.values(), ["rejected", "passed", "error", "skipped"] * 5, strict=False)
+    ]
+    records = {"typical": typical(4), "hostile": record(cases, command=HOSTILE["script"])}
+    written = {name: write_report(one, tmp_path_factory.mktemp(name)).as_uri() for name, one in records.items()}
+    both = write_comparison(records["typical"], records["hostile"], tmp_path_factory.mktemp("comparison"))
+    gallery = write_gallery(tmp_path_factory.mktemp("gallery"))
+    return written | {"comparison": both.as_uri(), "gallery": gallery.as_uri()}
+
+
+def visit(browser, address):
+    browser.get("about:blank")
+    for log in ("browser", "performance"):
+        browser.get_log(log)
+    browser.get(address)
+
+
+def requests(browser):
+    events = [json.loads(entry["message"])["message"] for entry in browser.get_log("performance")]
+    return [e["params"]["request"]["url"] for e in events if e["method"] == "Network.requestWillBeSent"]
+
+
+def names_shown(browser):
+    return [row.text for row in browser.find_elements(By.CSS_SELECTOR, "tbody th") if row.is_displayed()]
+
+
+@pytest.mark.parametrize("name", ["typical", "hostile", "comparison", "gallery"])
+def test_no_error_and_no_request(browser, pages, name):
+    visit(browser, pages[name])
+    browser.execute_script("document.querySelectorAll('details').forEach(it => it.open = true)")
+    assert browser.get_log("browser") == []
+    assert [url for url in requests(browser) if not url.startswith("data:")] == [pages[name]]
+    assert "fogproof" in browser.title
+
+
+def test_figures_are_visible(browser, pages):
+    visit(browser, pages["typical"])
+    browser.execute_script("document.querySelectorAll('details').forEach(it => it.open = true)")
+    drawings = browser.find_elements(By.CSS_SELECTOR, "figure .drawing > svg")
+    assert len(drawings) == 14
+    for drawing in drawings:
+        assert drawing.is_displayed()
+        assert drawing.size["width"] > 300
+        assert drawing.size["height"] > 150
+    pixels = browser.find_elements(By.CSS_SELECTOR, "svg image")
+    assert pixels
+    assert all(it.size["width"] > 5 for it in pixels)
+
+
+def test_filter_by_status_and_by_word(browser, pages):
+    visit(browser, pages["typical"])
+    everything = names_shown(browser)
+    assert len(everything) == 11
+    browser.find_element(By.CSS_SELECTOR, "input[value=rejected]").click()
+    assert names_shown(browser) == ["mitsuba/hg/g=0.95", "transmittance/ratio tracking"]
+    words = browser.find_element(By.NAME, "words")
+    words.send_keys("RATIO tracking")
+    assert names_shown(browser) == ["transmittance/ratio tracking"]
+    assert browser.find_element(By.TAG_NAME, "output").text == "1 of 11 shown"
+    shown = [it for it in browser.find_elements(By.CSS_SELECTOR, "details.case") if it.is_displayed()]
+    assert len(shown) == 1
+    words.send_keys(" nothing has this")
+    assert names_shown(browser) == []
+    words.clear()
+    words.send_keys("x", Keys.BACKSPACE)
+    browser.find_element(By.CSS_SELECTOR, "input[name=status][value='']").click()
+    assert names_shown(browser) == everything
+    words.send_keys("factor of two", Keys.ENTER)
+    assert names_shown(browser) == ["lecture/surprise"]
+
+
+def test_filter_of_a_comparison(browser, pages):
+    visit(browser, pages["comparison"])
+    browser.find_element(By.CSS_SELECTOR, "input[value=gone]").click()
+    assert len(names_shown(browser)) == 11 + len(browser.find_elements(By.CSS_SELECTOR, "table.plain tbody th"))
+    browser.find_element(By.NAME, "words").send_keys("ratio")
+    assert names_shown(browser)[0] == "transmittance/ratio tracking"
+    assert browser.find_element(By.TAG_NAME, "output").text == f"1 of {11 + len(HOSTILE)} shown"
+
+
+def in_view(browser, element):
+    top = browser.execute_script("return arguments[0].getBoundingClientRect().top", element)
+    return 0 <= top < browser.execute_script("return innerHeight")
+
+
+def section(browser, name):
+    return next(it for it in browser.find_elements(By.CSS_SELECTOR, "details.case") if it.text.startswith(name))
+
+
+@pytest.mark.parametrize("fragment", ["case/hg/g=-0.95", "case/hg/g%3D-0.95"])
+def test_address_opens_its_case(browser, pages, fragment):
+    visit(browser, f"{pages['typical']}#{fragment}")
+    opened = section(browser, "hg/g=-0.95")
+    assert opened.get_attribute("open")
+    assert in_view(browser, opened.find_element(By.TAG_NAME, "summary"))
+
+
+def test_link_opens_its_case_even_if_filtered_out(browser, pages):
+    visit(browser, pages["typical"])
+    assert not section(browser, "airlight/equiangular").get_attribute("open")
+    browser.find_element(By.CSS_SELECTOR, "input[value=passed]").click()
+    browser.find_element(By.CSS_SELECTOR, "li a[href*=equiangular]").click()
+    opened = section(browser, "airlight/equiangular")
+    assert opened.get_attribute("open")
+    assert in_view(browser, opened.find_element(By.TAG_NAME, "summary"))
+
+
+def test_every_hostile_name_has_a_working_link(browser, pages):
+    visit(browser, pages["hostile"])
+    links = browser.find_elements(By.CSS_SELECTOR, "tbody th a")
+    assert len(links) == len(HOSTILE)
+    for link in links:
+        before = set(browser.find_elements(By.CSS_SELECTOR, "details.case[open]"))
+        link.click()
+        after = set(browser.find_elements(By.CSS_SELECTOR, "details.case[open]"))
+        target = browser.execute_script("return document.querySelector(':target').closest('details')")
+        assert target in after
+        assert after - before <= {target}
+
+
+@pytest.mark.parametrize("name", ["typical", "hostile", "comparison", "gallery"])
+@pytest.mark.parametrize("width", [320, 400, 800])
+def test_nothing_sticks_out_sideways(browser, pages, name, width):
+    screen = {"width": width, "height": 800, "deviceScaleFactor": 1, "mobile": False}
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", screen)
+    try:
+        visit(browser, pages[name])
+        browser.execute_script("document.querySelectorAll('details').forEach(it => it.open = true)")
+        assert browser.execute_script("return innerWidth") == width
+        assert browser.execute_script("return document.documentElement.scrollWidth") <= width
+    finally:
+        browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("name", ["typical", "hostile", "comparison", "gallery"])
+def test_no_serious_barrier(browser, pages, name, scheme):
+    """axe-core's findings of impact serious or critical, every section open."""
+    feature = {"features": [{"name": "prefers-color-scheme", "value": scheme}]}
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", feature)
+    try:
+        visit(browser, pages[name])
+        paper = browser.execute_script("return getComputedStyle(document.body).backgroundColor")
+        assert paper == {"light": "rgb(255, 255, 254)", "dark": "rgb(20, 24, 29)"}[scheme]
+        browser.execute_script("document.querySelectorAll('details').forEach(it => it.open = true)")
+        browser.execute_script(resources.files("axe_core_python").joinpath("axe.min.js").read_text(encoding="utf-8"))
+        found = browser.execute_async_script("axe.run().then(arguments[arguments.length - 1])")
+    finally:
+        browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+    assert len(found["passes"]) > 20
+    serious = [
+        (it["id"], it["impact"], [node["html"][:200] for node in it["nodes"][:3]])
+        for it in found["violations"]
+        if it["impact"] in ("serious", "critical")
+    ]
+    assert serious == []
+
+
+def test_keyboard_reaches_everything(browser, pages):
+    visit(browser, pages["typical"])
+    focused = []
+    for _ in range(80):
+        browser.switch_to.active_element.send_keys(Keys.TAB)
+        element = browser.switch_to.active_element
+        focused.append((element.tag_name, element.text))
+        if element.tag_name == "summary" and element.text.startswith("airlight"):
+            element.send_keys(Keys.ENTER)
+            break
+    assert focused[0] == ("a", "Skip to the cases")
+    assert {"input", "a", "summary"} <= {tag for tag, _ in focused}
+    assert section(browser, "airlight/equiangular").get_attribute("open")
+
+
+def test_page_is_complete_without_scripts(pages, tmp_path):
+    driver = start(tmp_path / "profile", scripts=False)
+    try:
+        driver.get(f"{pages['typical']}#case/hg/g=-0.95")
+        assert not driver.find_element(By.ID, "filter").is_displayed()
+        assert len(names_shown(driver)) == 11
+        assert driver.find_element(By.CSS_SELECTOR, "figure svg").is_displayed()
+        opened = section(driver, "hg/g=-0.95")
+        WebDriverWait(driver, 20).until(lambda _: opened.get_attribute("open"))
+    finally:
+        driver.quit()
