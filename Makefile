@@ -8,7 +8,7 @@ BIN    := $(VENV)/bin
 .PHONY: help verify test lint format calibrate oracle-hard golden bench clean
 
 help:  ## list the targets
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 verify: $(VENV)/.installed  ## every sampler and estimator against its reference; the page lands in build/report
 	$(BIN)/fogproof verify --report build/report
