@@ -5,10 +5,10 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help verify test lint format calibrate bench golden clean
+.PHONY: help verify test lint format calibrate oracle-hard golden bench clean
 
 help:  ## list the targets
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 verify: $(VENV)/.installed  ## every sampler and estimator against its reference; the page lands in build/report
 	$(BIN)/fogproof verify --report build/report
@@ -28,6 +28,9 @@ format: $(VENV)/.installed-lint  ## let ruff rewrite what it can
 
 calibrate: $(VENV)/.installed-test  ## how often the checks reject what is right: 20 runs of the catalogue, 10^4 small verdicts
 	$(BIN)/python tools/calibrate.py
+
+oracle-hard: $(VENV)/.installed-test  ## the airlight integral on 10^5 hard cases against ball arithmetic
+	$(BIN)/python tools/oracle_hard.py
 
 bench: $(VENV)/.installed-test  ## benchmarks, as ratios of interleaved runs
 	@for script in benchmarks/*.py; do echo "== $$script"; $(BIN)/python $$script || exit 1; done

@@ -16,11 +16,12 @@ import numpy as np
 from fogproof.analytic.airlight_phase import airlight_phase
 from fogproof.analytic.convex_shapes import Chord, chord, faces
 from fogproof.analytic.error_free import EPS, TINY
+from fogproof.analytic.flat_rays import FlatRays
 from fogproof.analytic.gauss_legendre import NODES, WEIGHTS
 from fogproof.analytic.phase_functions import phase_pdf
 from fogproof.analytic.shadows import Shadow, shadow_of_direction
 from fogproof.errors import UnsupportedError
-from fogproof.scene import Medium, Ray
+from fogproof.scene import Medium
 from fogproof.scene.lights import DirectionalLight
 from fogproof.scene.occluders import Occluder
 from fogproof.scene.shapes import Ball, Shape, Unbounded
@@ -32,7 +33,7 @@ LARGEST_DEPTH = 2e4
 
 
 def directional_light(
-    medium: Medium, ray: Ray, light: DirectionalLight, shape: Shape, occluders: Sequence[Occluder]
+    medium: Medium, ray: FlatRays, light: DirectionalLight, shape: Shape, occluders: Sequence[Occluder]
 ) -> tuple[np.ndarray, np.ndarray, str, str]:
     """Return the radiance (n, channels) along the flattened rays, its error, method and source."""
     sigma = np.atleast_1d(medium.sigma_t)
@@ -56,7 +57,7 @@ def directional_light(
         error = gather(errors + parts * (1 - weight[:, None])) + (4 + len(occluders)) * EPS * value
         error = error + value * np.expm1(sigma * (inside.sure_start - inside.start)[:, None])
 
-        mu = np.clip(-(ray.direction.reshape(-1, 3) @ np.array(light.direction)), -1, 1)
+        mu = np.clip(-(ray.direction @ np.array(light.direction)), -1, 1)
         f = phase_pdf(medium.phase, mu)
         slope, steep = airlight_phase(medium.phase).slope(mu - 4 * EPS, mu + 4 * EPS)
         f_error = f.error + 4 * EPS * (slope * f.value + steep)
@@ -68,7 +69,7 @@ def directional_light(
 
 
 def _pieces(
-    shape: Shape, ray: Ray, light: DirectionalLight, inside: Chord, shadows: list[Shadow]
+    shape: Shape, ray: FlatRays, light: DirectionalLight, inside: Chord, shadows: list[Shadow]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Return start and end [m], ray, and the weight (1, or 1/2 where unsure) of the lit pieces between all breaks."""
     start, end = inside.start[:, None], inside.end[:, None]
@@ -90,7 +91,7 @@ def _pieces(
     return low[lit], high[lit], owner[lit], weight[lit]
 
 
-def _ways_back(shape: Shape, ray: Ray, light: DirectionalLight) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _ways_back(shape: Shape, ray: FlatRays, light: DirectionalLight) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return (n, k) offsets and slopes of the linear ways back to each face the light can come in by, and their scale.
 
     The way back from the point at t is the least of offset + slope t; none means that no light comes in at all.
@@ -99,12 +100,12 @@ def _ways_back(shape: Shape, ray: Ray, light: DirectionalLight) -> tuple[np.ndar
     facing = -(normals @ np.array(light.direction))
     entered = facing > 1e-150  # a face edge-on is infinitely far
     normals, offsets, facing = normals[entered], offsets[entered], facing[entered]
-    origin, d = ray.origin.reshape(-1, 3), ray.direction.reshape(-1, 3)
+    origin, d = ray.origin, ray.direction
     size = np.abs(origin).sum(axis=1)[:, None] + np.abs(offsets)
     return (offsets - origin @ normals.T) / facing, -(d @ normals.T) / facing, size / facing
 
 
-def _changes_of_face(shape: Shape, ray: Ray, light: DirectionalLight) -> np.ndarray:
+def _changes_of_face(shape: Shape, ray: FlatRays, light: DirectionalLight) -> np.ndarray:
     """Return (n, m) places where two faces are equally far."""
     offset, slope, _ = _ways_back(shape, ray, light)
     i, j = np.triu_indices(offset.shape[1], 1)
@@ -113,7 +114,7 @@ def _changes_of_face(shape: Shape, ray: Ray, light: DirectionalLight) -> np.ndar
 
 def _polyhedron(
     shape: Shape,
-    ray: Ray,
+    ray: FlatRays,
     light: DirectionalLight,
     sigma: np.ndarray,
     start: np.ndarray,
@@ -144,7 +145,7 @@ def _polyhedron(
 
 def _ball(
     shape: Shape,
-    ray: Ray,
+    ray: FlatRays,
     light: DirectionalLight,
     sigma: np.ndarray,
     start: np.ndarray,
@@ -159,7 +160,7 @@ def _ball(
         raise UnsupportedError(
             f"parallel light in a ball of optical radius {R * sigma.max():g} > {LARGEST_DEPTH:g}", "shape"
         )
-    origin, d = ray.origin.reshape(-1, 3)[owner] - np.array(shape.center), ray.direction.reshape(-1, 3)[owner]
+    origin, d = ray.origin[owner] - np.array(shape.center), ray.direction[owner]
     Q0, Q1 = np.cross(origin, v), np.cross(d, v)
     bend = np.sum(Q1 * Q1, axis=1)
     middle = np.where(bend > 0, -np.sum(Q0 * Q1, axis=1) / bend, 0.0)

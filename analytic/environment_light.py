@@ -21,9 +21,10 @@ import numpy as np
 from fogproof.analytic.airlight_phase import airlight_phase
 from fogproof.analytic.convex_shapes import chord, faces
 from fogproof.analytic.error_free import EPS, TINY
+from fogproof.analytic.flat_rays import FlatRays
 from fogproof.analytic.phase_functions import phase_pdf
 from fogproof.errors import UnsupportedError
-from fogproof.scene import AnyMedium, Medium, Ray
+from fogproof.scene import AnyMedium, Medium
 from fogproof.scene.lights import Environment
 from fogproof.scene.occluders import Occluder
 from fogproof.scene.phase_functions import Isotropic, PhaseFunction
@@ -39,7 +40,7 @@ Rule = tuple[np.ndarray, np.ndarray]
 
 
 def environment_light(
-    medium: AnyMedium, ray: Ray, light: Environment, shape: Shape, occluders: Sequence[Occluder]
+    medium: AnyMedium, ray: FlatRays, light: Environment, shape: Shape, occluders: Sequence[Occluder]
 ) -> tuple[np.ndarray, np.ndarray, str, str]:
     """Return the radiance (n, channels) along the flattened rays, its estimated error, method and source."""
     if not isinstance(medium, Medium) or occluders:
@@ -53,7 +54,7 @@ def environment_light(
     if not isinstance(shape, HalfSpace | Slab | Ball):
         raise UnsupportedError(f"an environment around a {type(shape).__name__}; use HalfSpace, Slab or Ball", "shape")
     inside = chord(shape, ray)
-    origin, d = ray.origin.reshape(-1, 3), ray.direction.reshape(-1, 3)
+    origin, d = ray.origin, ray.direction
     with np.errstate(all="ignore"):
         for i in range(len(value)):
             start, end = inside.start[i], inside.end[i]

@@ -13,14 +13,14 @@ import numpy as np
 
 from fogproof.analytic.airlight_asinh import Gain
 from fogproof.analytic.error_free import EPS
-from fogproof.analytic.ray_and_light import Placement
+from fogproof.analytic.ray_and_light import Placement, foot
 from fogproof.scene.lights import SpotLight
 
 
 def axis_products(where: Placement, light: SpotLight) -> tuple[np.ndarray, np.ndarray]:
     """Return A [m] and B, (n,) both."""
     axis = np.array(light.direction)[:, None]
-    return np.sum(axis * where.foot, axis=0), np.sum(axis * where.direction, axis=0)
+    return np.sum(axis * foot(where), axis=0), np.sum(axis * where.direction, axis=0)
 
 
 def margin(where: Placement) -> np.ndarray:
@@ -76,9 +76,9 @@ def falloff(where: Placement, light: SpotLight, ray: np.ndarray) -> tuple[Gain |
         return None, np.zeros(len(where.h))
     A, B = axis_products(where, light)
 
-    def factor(w: np.ndarray, wt: np.ndarray, segment: np.ndarray) -> np.ndarray:
+    def factor(w: np.ndarray, wt: np.ndarray, scale: np.ndarray, segment: np.ndarray) -> np.ndarray:
         i = ray[segment]
-        cosine = (2 * A[i] + B[i] * (w - wt)) / (w + wt)
+        cosine = (2 * A[i] * scale + B[i] * (w - wt)) / (w + wt)
         return intensity(light, cosine)
 
     steepness = light.exponent + (1.5 / (inner - outer) if inner > outer else 0.0)

@@ -13,8 +13,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fogproof.analytic.error_free import EPS
+from fogproof.analytic.flat_rays import FlatRays
 from fogproof.scene.occluders import Occluder, Sphere
-from fogproof.scene.rays import Ray
 
 Interval = tuple[np.ndarray, np.ndarray]
 
@@ -28,18 +28,18 @@ class Shadow(NamedTuple):
     end: np.ndarray
 
 
-def shadow_of_point(occluder: Occluder, ray: Ray, light: tuple[float, float, float]) -> Shadow:
+def shadow_of_point(occluder: Occluder, ray: FlatRays, light: tuple[float, float, float]) -> Shadow:
     """Return the shadow that the occluder casts on each (flattened) ray in the light of a point."""
-    origin, d = ray.origin.reshape(-1, 3), ray.direction.reshape(-1, 3)
+    origin, d = ray.origin, ray.direction
     p = np.array(light)
     return _with_margin(
         occluder, np.abs(origin).max(axis=1) + np.abs(p).max(), lambda o, m: _from_point(o, origin, d, p, m)
     )
 
 
-def shadow_of_direction(occluder: Occluder, ray: Ray, travel: tuple[float, float, float]) -> Shadow:
+def shadow_of_direction(occluder: Occluder, ray: FlatRays, travel: tuple[float, float, float]) -> Shadow:
     """Return the shadow that the occluder casts on each (flattened) ray in parallel light."""
-    origin, d = ray.origin.reshape(-1, 3), ray.direction.reshape(-1, 3)
+    origin, d = ray.origin, ray.direction
     v = np.array(travel)
     return _with_margin(occluder, np.abs(origin).max(axis=1), lambda o, m: _from_direction(o, origin, d, v, m))
 

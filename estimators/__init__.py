@@ -1,6 +1,7 @@
 """Samplers, pure functions of uniforms, and Monte Carlo estimators of the rendering equation. Nothing shared with the oracle."""
 
 from fogproof.estimators.compiled import CompiledField
+from fogproof.estimators.decoupled_airlight import CachedTransmittance, DecoupledAirlight
 from fogproof.estimators.delta_tracking import DeltaFreePath, DeltaTransmittance, delta_tracking
 from fogproof.estimators.directions import Cosines, Directions
 from fogproof.estimators.environment_airlight import EnvironmentAirlight
@@ -17,6 +18,7 @@ from fogproof.estimators.placing import placer
 from fogproof.estimators.ratio_tracking import RatioTransmittance, ResidualRatioTransmittance, ratio_tracking
 from fogproof.estimators.ray_marching import MarchedFreePath, MarchedTransmittance, RayMarch, feature_size
 from fogproof.estimators.regular_tracking import RegularFreePath, RegularTransmittance, regular_tracking
+from fogproof.estimators.shadow_rays import shadow_transmittance
 from fogproof.estimators.single_scattering import Airlight
 from fogproof.estimators.spectral_tracking import SpectralFog, SpectralFreePath, spectral_tracking
 from fogproof.estimators.transmittance import AnalogTransmittance, SpectralTransmittance
@@ -25,10 +27,12 @@ __all__ = [
     "Airlight",
     "AnalogFog",
     "AnalogTransmittance",
+    "CachedTransmittance",
     "CertainCollisionFog",
     "CompiledField",
     "Constant",
     "Cosines",
+    "DecoupledAirlight",
     "DeltaFreePath",
     "DeltaTransmittance",
     "Directions",
@@ -64,5 +68,6 @@ __all__ = [
     "placer",
     "ratio_tracking",
     "regular_tracking",
+    "shadow_transmittance",
     "spectral_tracking",
 ]

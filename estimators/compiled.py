@@ -37,7 +37,7 @@ class CompiledField:
         try:
             self.function.compile(arguments)
             returned = self.function.overloads[arguments].signature.return_type
-        except NumbaError as error:
+        except (NumbaError, TypeError, RuntimeError) as error:
             reason = str(error).strip().splitlines()[-1]
             raise InvalidValueError(
                 "function", f"must compile as {call}", self.function.__name__, f"numba says: {reason}"

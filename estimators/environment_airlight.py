@@ -70,7 +70,8 @@ class EnvironmentAirlight:
         for _ in range(self.directions):
             drawn = self._sampler.sample(rng.random((n, 2)))
             w = np.ascontiguousarray(drawn.x.T)
-            arriving += self._weight(drawn.weight, drawn.pdf, w) * lit.transmittance(x, w, np.full(n, np.inf), rng)
+            through, _ = lit.transmittance(x, w, np.full(n, np.inf), rng)
+            arriving += self._weight(drawn.weight, drawn.pdf, w) * through
         scattered = lit.albedo * lit.extinction.sigma(places.x) * grey("radiance", self.light.radiance) * arriving
         return lit.seen(places.x) * scattered / (self.directions * places.pdf)
 

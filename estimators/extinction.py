@@ -13,6 +13,8 @@ import numpy as np
 
 from fogproof.errors import InvalidValueError, UnsupportedError
 from fogproof.estimators.grey import grey
+from fogproof.estimators.medium_data import box, grey_medium, look_ups
+from fogproof.estimators.optical_depth import optical_depth
 from fogproof.scene import AnyMedium, ExponentialMedium, LinearMedium, Medium, OpenGLFog, Ray
 from fogproof.validate import number
 
@@ -177,13 +179,42 @@ class Vanishing:
         return np.minimum(self.start - (self.end - self.start) * np.expm1(-depth), below)
 
 
+@dataclass(frozen=True, eq=False)
+class LookedUp:
+    """The extinction of any grey medium along a ray, looked up point by point; where a depth is reached is not known.
+
+    ray  one ray; t counts from its origin
+    """
+
+    medium: AnyMedium
+    ray: Ray
+
+    def sigma(self, t: np.ndarray) -> np.ndarray:
+        """Return the extinction coefficient, 0 outside of what the medium fills."""
+        x = self.ray.origin + t[:, None] * self.ray.direction
+        lower, upper = box(self.medium)
+        inside = np.all((x >= lower) & (x <= upper), axis=-1)
+        sigma = look_ups(self.medium)(x, np.broadcast_to(self.ray.direction, x.shape))[:, 0]
+        return np.where(inside, sigma, 0.0)
+
+    def depth(self, t: np.ndarray) -> np.ndarray:
+        """Return the optical depth, cell by cell or by quadrature."""
+        return optical_depth(self.medium, self.ray, np.atleast_1d(t))[:, 0].reshape(np.shape(t))
+
+    def reach(self, depth: np.ndarray) -> np.ndarray:
+        """Say that trackers know."""
+        raise UnsupportedError(
+            f"no closed form of the free path in a {type(self.medium).__name__}; track it instead", "medium"
+        )
+
+
 def as_extinction(value: Extinction | float) -> Extinction:
     """Return an extinction; a number is a constant sigma_t [1/m]."""
     return Constant(value) if isinstance(value, int | float) else value
 
 
 def along(medium: AnyMedium, ray: Ray) -> Extinction:
-    """Return the extinction along one ray of a grey medium that has a closed form."""
+    """Return the extinction along one ray of a grey medium, in closed form where there is one."""
     if ray.shape:
         raise UnsupportedError(f"an estimator looks along one ray, got a batch of shape {ray.shape}", "ray")
     origin, direction = ray.origin, ray.direction
@@ -205,4 +236,4 @@ def along(medium: AnyMedium, ray: Ray) -> Extinction:
                 case "exp2":
                     return Linear(0.0, 2 * medium.density**2)
             return Vanishing(medium.start, medium.end)
-    raise UnsupportedError(f"no closed form of the free path in a {type(medium).__name__}; track it instead", "medium")
+    return LookedUp(grey_medium(medium), ray)

@@ -11,15 +11,18 @@ from fogproof.errors import UnsupportedError
 from fogproof.estimators.extinction import along
 from fogproof.estimators.free_path import FreePath, HomogeneousSpectralFreePath, TruncatedFreePath
 from fogproof.estimators.grey import grey
+from fogproof.estimators.medium_data import grey_medium
 from fogproof.scene import AnyMedium, Medium, Ray
 from fogproof.validate import Channels
 
 
 def everywhere(medium: AnyMedium) -> tuple[float, float]:
     """Return albedo and emission [W/(m^2 sr)] of a grey medium in which they are the same everywhere."""
-    if callable(medium.albedo) or callable(medium.emission) or isinstance(medium.emission, np.ndarray):
-        raise UnsupportedError("albedo and emission must be the same everywhere", "medium")
-    return float(np.asarray(medium.albedo)), grey("emission", medium.emission)
+    grey_medium(medium)
+    for value in (medium.albedo, medium.emission):
+        if callable(value) or np.ndim(value) > 0:
+            raise UnsupportedError("albedo and emission must be the same everywhere", "medium")
+    return float(np.asarray(medium.albedo)), float(np.asarray(medium.emission))
 
 
 def source_per_collision(medium: AnyMedium, ambient: float) -> float:

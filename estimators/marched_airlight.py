@@ -53,13 +53,15 @@ class MarchedAirlight:
 
     def draw(self, rng: np.random.Generator, n: int) -> Draws:
         """Return n realisations of the radiance [W/(m^2 sr)], each at the cost of N places looked at."""
-        cost = np.full(n, float(self.steps))
         if self.rule != "jittered":
-            return Draws(np.full(n, self._sum(rng)), cost)
-        value, step = np.zeros(n), self._lit.length / self.steps
+            return Draws(np.full(n, self._sum(rng)), np.full(n, float(self.steps)))
+        value, cost = np.zeros((2, n))
+        step = self._lit.length / self.steps
         for k in range(self.steps):
             t = step * (k + rng.random(n))
-            value += step * self._lit.seen(t) * self._lit.scattered(t, rng)
+            scattered, looked = self._lit.scattered(t, rng)
+            value += step * self._lit.seen(t) * scattered
+            cost += looked
         return Draws(value, cost)
 
     def _sum(self, rng: np.random.Generator) -> float:
@@ -68,4 +70,4 @@ class MarchedAirlight:
         t = step * (np.arange(self.steps) + (0.5 if self.rule == "midpoint" else 1.0))
         gained = lit.extinction.sigma(t) * step
         depth = np.cumsum(gained) - (0.5 * gained if self.rule == "midpoint" else 0.0)
-        return float(np.sum(np.exp(-depth) * lit.scattered(t, rng)) * step)
+        return float(np.sum(np.exp(-depth) * lit.scattered(t, rng)[0]) * step)

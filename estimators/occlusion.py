@@ -34,6 +34,8 @@ def _meets_disk(disk: Disk, x: np.ndarray, w: np.ndarray, distance: np.ndarray) 
     normal = np.asarray(disk.normal)
     centre = np.asarray(disk.center)[:, None] - x
     height, slope = normal @ centre, normal @ w
-    crossing = np.divide(height, slope, out=np.full_like(height, -1.0), where=slope != 0)
-    gap = crossing * w - centre
-    return (crossing > 0) & (crossing < distance) & (np.sum(gap * gap, axis=0) < disk.radius**2)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        crossing = height / slope
+    crosses = (crossing > 0) & (crossing < distance)
+    gap = np.where(crosses, crossing, 0.0) * w - centre
+    return crosses & (np.sum(gap * gap, axis=0) < disk.radius**2)

@@ -15,28 +15,41 @@ import numpy as np
 
 from fogproof.contracts import Draws
 from fogproof.estimators.majorant_grid import MajorantGrid
-from fogproof.estimators.tracked import Tracked, run, single, track
+from fogproof.estimators.tracked import Tracked, require_fewer_look_ups, run, single, track
 from fogproof.estimators.wavefront import ratio_wavefront
 from fogproof.scene import AnyMedium, Ray
+
+Majorant = float | MajorantGrid | None
+Control = float | Literal["low", "middle"]
+
+MOST_LOOK_UPS = 1e9
+"""Of one realisation: it looks at every tentative collision on the way."""
 
 
 def ratio_tracking(
     medium: AnyMedium,
     rays: Ray,
     rng: np.random.Generator,
-    majorant: float | MajorantGrid | None = None,
-    control: float | Literal["middle"] = 0.0,
+    majorant: Majorant = None,
+    control: Control = 0.0,
 ) -> Draws:
     """Return one estimate of the transmittance along each ray of a batch, in its shape, then (channels,) if there are any.
 
     medium    homogeneous, linear, exponential, layered, voxels or procedural; all channels are tracked together
     majorant  bound of sigma_t [1/m]: a number, in blocks, or None for the medium's own; look-ups above it raise
-    control   extinction handled in closed form [1/m]; "middle": half-way between the known bounds, which may differ from
-              block to block; 0 is ratio tracking
+    control   extinction handled in closed form [1/m]: a number, or piece by piece the "low" bound that is known, which keeps
+              weights in [0, 1], or the "middle" between both bounds, which halves the look-ups, but has weights up to 2 at each;
+              0 is ratio tracking
     """
-    draws = _estimate(track(medium, rays, majorant, control), rng, rays.length.size)
+    draws = _estimate(_track(medium, rays, majorant, control), rng, rays.length.size)
     channels = () if medium.channels is None else (medium.channels,)
     return Draws(draws.value.reshape(rays.shape + channels), np.asarray(draws.cost).reshape(rays.shape))
+
+
+def _track(medium: AnyMedium, rays: Ray, majorant: Majorant, control: Control = 0.0) -> Tracked:
+    tracked = track(medium, rays, majorant, control)
+    require_fewer_look_ups(tracked, medium, MOST_LOOK_UPS)
+    return tracked
 
 
 def _estimate(tracked: Tracked, rng: np.random.Generator, n: int) -> Draws:
@@ -55,11 +68,11 @@ class RatioTransmittance:
 
     medium: AnyMedium
     ray: Ray
-    majorant: float | MajorantGrid | None = None
+    majorant: Majorant = None
 
     @cached_property
     def _tracked(self) -> Tracked:
-        return track(self.medium, single(self.ray), self.majorant)
+        return _track(self.medium, single(self.ray), self.majorant)
 
     def draw(self, rng: np.random.Generator, n: int) -> Draws:
         """Return n realisations, (n,) or (n, channels), at the cost of their look-ups."""
@@ -73,12 +86,12 @@ class ResidualRatioTransmittance:
 
     medium: AnyMedium
     ray: Ray
-    majorant: float | MajorantGrid | None = None
-    control: float | Literal["middle"] = "middle"
+    majorant: Majorant = None
+    control: Control = "low"
 
     @cached_property
     def _tracked(self) -> Tracked:
-        return track(self.medium, single(self.ray), self.majorant, self.control)
+        return _track(self.medium, single(self.ray), self.majorant, self.control)
 
     def draw(self, rng: np.random.Generator, n: int) -> Draws:
         """Return n realisations, (n,) or (n, channels), at the cost of their look-ups."""

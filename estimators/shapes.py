@@ -1,4 +1,4 @@
-"""Where straight ways run through the convex shapes that hold a medium."""
+"""Where straight ways run through the convex shapes that hold a medium: pairs of parallel planes (Kay & Kajiya 1986), and balls."""
 
 from __future__ import annotations
 
@@ -6,44 +6,44 @@ import numpy as np
 
 from fogproof.scene.shapes import Ball, Box, HalfSpace, Shape, Slab, Unbounded
 
+Ways = tuple[np.ndarray, np.ndarray]
 
-def through(shape: Shape, x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+
+def through(shape: Shape, x: np.ndarray, w: np.ndarray) -> Ways:
     """Return the distances (n,) at which the lines from x (3, n) along w (3, n) enter and leave the shape.
 
     They may be negative or infinite; enter >= leave means that the line misses it.
     """
-    everywhere = np.full(x.shape[1], -np.inf), np.full(x.shape[1], np.inf)
     match shape:
         case Unbounded():
-            return everywhere
+            return np.full(x.shape[1], -np.inf), np.full(x.shape[1], np.inf)
         case HalfSpace(point, normal):
-            return _between([(np.asarray(normal), float(np.dot(normal, point)))], x, w)
+            return _layer(-np.inf, 0.0, np.asarray(normal), np.asarray(point), x, w)
         case Slab(point, normal, thickness):
-            n, at = np.asarray(normal), float(np.dot(normal, point))
-            return _between([(n, at), (-n, thickness - at)], x, w)
+            return _layer(-thickness, 0.0, np.asarray(normal), np.asarray(point), x, w)
         case Box(lower, upper):
-            faces = [(np.eye(3)[i], upper[i]) for i in range(3)] + [(-np.eye(3)[i], -lower[i]) for i in range(3)]
-            return _between(faces, x, w)
+            layers = [_layer(lower[i], upper[i], np.eye(3)[i], np.zeros(3), x, w) for i in range(3)]
+            return np.max([enter for enter, _ in layers], axis=0), np.min([leave for _, leave in layers], axis=0)
         case Ball(center, radius):
             return _ball(np.asarray(center), radius, x, w)
 
 
-def _between(faces: list[tuple[np.ndarray, float]], x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Clip the lines by planes (outward normal, offset), one after the other (Cyrus & Beck 1978)."""
-    enter, leave = np.full(x.shape[1], -np.inf), np.full(x.shape[1], np.inf)
-    for normal, offset in faces:
-        inside, slope = offset - normal @ x, normal @ w
-        crossing = np.divide(inside, slope, out=np.zeros_like(inside), where=slope != 0)
-        leave = np.where(slope > 0, np.minimum(leave, crossing), leave)
-        enter = np.where(slope < 0, np.maximum(enter, crossing), enter)
-        enter = np.where((slope == 0) & (inside < 0), np.inf, enter)
-    return enter, leave
+def _layer(low: float, high: float, normal: np.ndarray, point: np.ndarray, x: np.ndarray, w: np.ndarray) -> Ways:
+    """The points whose height over `point` along the normal lies between low and high."""
+    height, rise = normal @ (x - point[:, None]), normal @ w
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        one, two = (low - height) / rise, (high - height) / rise
+    level, inside = rise == 0, (low <= height) & (height <= high)
+    enter = np.where(level, np.where(inside, -np.inf, np.inf), np.minimum(one, two))
+    return enter, np.where(level, np.where(inside, np.inf, -np.inf), np.maximum(one, two))
 
 
-def _ball(center: np.ndarray, radius: float, x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    towards = center[:, None] - x
-    along = np.sum(towards * w, axis=0)
-    gap = towards - along * w
-    square = radius * radius - np.sum(gap * gap, axis=0)
-    half = np.sqrt(np.maximum(square, 0))
-    return np.where(square > 0, along - half, np.inf), np.where(square > 0, along + half, -np.inf)
+def _ball(center: np.ndarray, radius: float, x: np.ndarray, w: np.ndarray) -> Ways:
+    """The roots of t^2 + 2 b t + c, without cancellation."""
+    offset = x - center[:, None]
+    b, c = np.sum(offset * w, axis=0), np.sum(offset * offset, axis=0) - radius * radius
+    square = b * b - c
+    far = -(b + np.copysign(np.sqrt(np.maximum(square, 0)), b))
+    near = np.divide(c, far, out=np.zeros_like(c), where=far != 0)
+    missed = square <= 0
+    return np.where(missed, np.inf, np.minimum(near, far)), np.where(missed, -np.inf, np.maximum(near, far))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -12,6 +13,7 @@ from fogproof.errors import UnsupportedError
 from fogproof.estimators.blocks import blocks
 from fogproof.estimators.lit_medium import LitMedium
 from fogproof.estimators.placing import Placer, Placing, placer
+from fogproof.estimators.shadow_rays import ShadowRays
 from fogproof.scene import AnyMedium, Ray
 from fogproof.scene.lights import DirectionalLight, Light, PointLight, SpotLight
 from fogproof.scene.occluders import Occluder
@@ -34,6 +36,7 @@ class Airlight:
     placing: Placing = "equiangular"
     occluders: tuple[Occluder, ...] = ()
     shape: Shape = field(default_factory=Unbounded)
+    shadow_rays: ShadowRays = "exact"
 
     def __post_init__(self) -> None:
         if not isinstance(self.light, PointLight | SpotLight | DirectionalLight):
@@ -41,24 +44,29 @@ class Airlight:
 
     @cached_property
     def _lit(self) -> LitMedium:
-        return LitMedium(self.medium, self.ray, self.light, self.occluders, self.shape)
+        return LitMedium(self.medium, self.ray, self.light, self.occluders, self.shape, self.shadow_rays)
 
     @cached_property
     def _placer(self) -> Placer:
         return placer(self._lit, self.placing)
 
     def draw(self, rng: np.random.Generator, n: int) -> Draws:
-        """Return n realisations of the radiance [W/(m^2 sr)], each at the cost of one place looked at."""
-        value = np.zeros(n)
-        for block in blocks(n if self._lit.length > 0 else 0):
-            value[block] = self._some(rng, len(value[block]))
-        return Draws(value, np.ones(n))
+        """Return n realisations of the radiance [W/(m^2 sr)], at the cost of their look-ups."""
+        if self._lit.length == 0:
+            return Draws(np.zeros(n), np.zeros(n))
+        return one_sample(self._lit, self._placer, self._lit.seen, rng, n)
 
-    def _some(self, rng: np.random.Generator, n: int) -> np.ndarray:
-        places = self._placer.sample(rng.random((n, 1)))
-        assert places.pdf is not None
-        if places.event is None:
-            return self._lit.seen(places.x) * self._lit.scattered(places.x, rng) / places.pdf
-        inside = places.event == 0  # a path that leaves the medium sees no airlight
-        t = np.where(inside, places.x, 0.0)
-        return np.where(inside, self._lit.seen(t) * self._lit.scattered(t, rng) / places.pdf, 0.0)
+
+def one_sample(
+    lit: LitMedium, places: Placer, seen: Callable[[np.ndarray], np.ndarray], rng: np.random.Generator, n: int
+) -> Draws:
+    """Return n one-sample estimates with places drawn by `places` and a given transmittance from the camera."""
+    value, cost = np.empty((2, n))
+    for block in blocks(n):
+        drawn = places.sample(rng.random((len(value[block]), 1)))
+        assert drawn.pdf is not None
+        inside = np.ones(len(drawn.x), bool) if drawn.event is None else drawn.event == 0
+        t = drawn.x if drawn.event is None else np.where(inside, drawn.x, 0.0)
+        scattered, cost[block] = lit.scattered(t, rng)
+        value[block] = np.where(inside, seen(t) * scattered / drawn.pdf, 0.0)  # a path that leaves the medium sees none
+    return Draws(value, cost)

@@ -16,6 +16,9 @@ from fogproof.validate import number, require
 PROBES = 64
 """Points at which a majorant that somebody else has chosen is tested before any tracking."""
 
+MOST_STEPS = 1e15
+"""Tentative collisions on the whole way; beyond that, floating-point distances cannot tell one from the next."""
+
 
 class Tracked(NamedTuple):
     """A medium and rays, ready for tracking.
@@ -47,7 +50,7 @@ def track(medium: AnyMedium, ray: Ray, majorant: float | MajorantGrid | None = N
     """Return what trackers need to follow the flattened rays.
 
     majorant  bound of sigma_t along the rays [1/m]: a number, in blocks, or None for the least that is known without a search
-    control   extinction that is handled in closed form [1/m]; "middle" is half-way between the bounds, piece by piece
+    control   extinction that is handled in closed form [1/m]; "low" or "middle" for the lower bound or the middle of both
     """
     origin, direction = (np.array(a.reshape(-1, 3), order="C") for a in (ray.origin, ray.direction))
     length = np.array(ray.length.reshape(-1))
@@ -67,13 +70,14 @@ def track(medium: AnyMedium, ray: Ray, majorant: float | MajorantGrid | None = N
     elif isinstance(medium, Procedural) and medium.majorant == 0:
         raise InvalidValueError("majorant", "must be > 0 [1/m]: with 0 nobody would ever look at the medium", 0.0)
     require("majorant", high, np.isfinite(high), "must be finite [1/m]", "the extinction overflows: shorten the ray")
-    if control == "middle":
-        control = 0.5 * (low + high)
+    if control in ("low", "middle"):
+        control = np.array(low) if control == "low" else 0.5 * (low + high)
     else:
         control = np.full_like(high, number("control", control, "must be finite and >= 0 [1/m]", 0))
     residual = np.maximum(high - control, np.where(control > 0, control - low, 0.0))
     bound: Any = _bound(majorant, control, residual, lower, upper)
     found = Tracked(data, field, channels, bound, origin, direction, length)
+    require_fewer_look_ups(found, medium, MOST_STEPS)
     if majorant is not None or isinstance(medium, Procedural):
         _probe(found, medium, majorant, high)
     return found
@@ -87,6 +91,16 @@ def run(kernel: Any, tracked: Tracked, rng: np.random.Generator, *results: np.nd
         kernel = uncached(kernel)
     rays = (tracked.origin, tracked.direction, tracked.length)
     refuse(*kernel(rng, tracked.data, tracked.bound, *rays, *results))
+
+
+def require_fewer_look_ups(tracked: Tracked, medium: AnyMedium, most: float) -> None:
+    """Raise if tracking to the end of a ray means more look-ups than that."""
+    lower, upper = box(medium)
+    longest = float(np.minimum(tracked.length, np.linalg.norm(upper - lower)).max(initial=0.0))
+    expected = longest * float(tracked.bound.majorant.max(initial=0.0))
+    if expected > most:
+        rule = f"must make at most {most:g} look-ups on the way to the end of a ray"
+        raise InvalidValueError("majorant", rule, expected, "shorten the ray, or bound the extinction in blocks")
 
 
 def refuse(sigma: float, limit: float, t: float) -> None:

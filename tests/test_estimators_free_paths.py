@@ -155,7 +155,7 @@ def test_rays_and_media_without_a_closed_form_are_refused():
     grid = VoxelGrid(np.ones((2, 2, 2)), (0, 0, 0), (1, 1, 1))
     for medium in (grid, Procedural(lambda x: np.ones(x.shape[:-1]), 1.0)):
         with pytest.raises(UnsupportedError, match="track"):
-            along(medium, UP)
+            FreePath(along(medium, Ray((0, 0, 0), (0, 0, 1), 1.0)), 1.0).sample(EDGES)
     with pytest.raises(UnsupportedError, match="eye"):
         along(OpenGLFog("exp"), Ray((0, 0, 1), (0, 0, 1)))
     with pytest.raises(UnsupportedError, match="batch"):

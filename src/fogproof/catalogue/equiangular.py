@@ -26,7 +26,7 @@ def _density(h: float, a: float, b: float) -> Callable[[np.ndarray], Reference]:
 
 
 def _case(
-    name: str, title: str, h: float, a: float, b: float, error: str, sample: Any = None, pdf: Any = None
+    name: str, title: str, h: float, a: float, b: float, error: str, sample: Any = None, pdf: Any = None, **options: Any
 ) -> SamplerCase:
     def make() -> Equiangular:
         return Equiangular(h, a, b)
@@ -39,6 +39,7 @@ def _case(
         oracle="airlight_integral at sigma_t = 0",
         source="Kulla & Fajardo 2012",
         twin=Twin(error, lambda: Altered(make(), sample, pdf)),
+        options=options,
     )
 
 
@@ -112,6 +113,16 @@ def cases() -> list[SamplerCase]:
             _from_camera,
         ),
         _case("infinite", "Equiangular on a ray without end", 2.0, -3.0, np.inf, "the sign of t is lost", _mirrored),
+        _case(
+            "float32",
+            "Equiangular in single precision, light beside the ray",
+            0.05,
+            -1.0,
+            3.0,
+            "t counted from the camera, not the foot",
+            _from_camera,
+            precision="float32",
+        ),
         SamplerCase(
             name="equiangular/mixed",
             title="Equiangular or free path by a coin",

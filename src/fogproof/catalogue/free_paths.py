@@ -73,6 +73,7 @@ def _case(
     length: float = np.inf,
     source: str = "Beer-Lambert law",
     with_cdf: bool = True,
+    **options: Any,
 ) -> SamplerCase:
     cdf = _cdf(medium, getattr(make(), "surface", np.inf), length)
     return SamplerCase(
@@ -83,23 +84,37 @@ def _case(
         oracle="transmittance",
         source=source,
         twin=Twin(error, lambda: Altered(make(), sample, pdf)),
-        options={"cdf": cdf} if with_cdf else {},
+        options={**({"cdf": cdf} if with_cdf else {}), **options},
     )
 
 
 def _homogeneous(
-    name: str, title: str, sigma_t: float, surface: float, error: str, sample: Any = None, pdf: Any = None
+    name: str,
+    title: str,
+    sigma_t: float,
+    surface: float,
+    error: str,
+    sample: Any = None,
+    pdf: Any = None,
+    **options: Any,
 ) -> SamplerCase:
-    return _case(name, title, Medium(sigma_t, 0.0), lambda: FreePath(sigma_t, surface), error, sample, pdf)
+    return _case(name, title, Medium(sigma_t, 0.0), lambda: FreePath(sigma_t, surface), error, sample, pdf, **options)
 
 
 def _graded(
-    name: str, title: str, medium: AnyMedium, surface: float, error: str, sample: Any = None, pdf: Any = None
+    name: str,
+    title: str,
+    medium: AnyMedium,
+    surface: float,
+    error: str,
+    sample: Any = None,
+    pdf: Any = None,
+    **options: Any,
 ) -> SamplerCase:
     def make() -> FreePath:
         return FreePath(along(medium, Ray(*_START)), surface)
 
-    return _case(name, title, medium, make, error, sample, pdf)
+    return _case(name, title, medium, make, error, sample, pdf, **options)
 
 
 def _truncated(
@@ -111,11 +126,14 @@ def _truncated(
     sample: Any = None,
     pdf: Any = None,
     with_cdf: bool = True,
+    **options: Any,
 ) -> SamplerCase:
     def make() -> TruncatedFreePath:
         return TruncatedFreePath(along(medium, Ray(*_START)), length)
 
-    return _case(f"truncated/{name}", title, medium, make, error, sample, pdf, length=length, with_cdf=with_cdf)
+    return _case(
+        f"truncated/{name}", title, medium, make, error, sample, pdf, length=length, with_cdf=with_cdf, **options
+    )
 
 
 def _spectral(
@@ -206,6 +224,18 @@ def _clipped(sampler: TruncatedFreePath, u: np.ndarray) -> np.ndarray:
 
 def _not_renormalised(sampler: TruncatedFreePath, x: np.ndarray) -> np.ndarray:
     return FreePath(sampler.extinction).pdf(x)
+
+
+def _coarse(sampler: FreePath, u: np.ndarray) -> np.ndarray:
+    """Uniforms of 12 bits."""
+    return sampler.sample(np.floor(4096 * u) / 4096).x
+
+
+def _cancelling(sampler: TruncatedFreePath, u: np.ndarray) -> np.ndarray:
+    """The probability of a collision as 1 - exp(-depth), which is a multiple of the roundoff."""
+    sigma = np.float32(sampler.extinction.sigma(np.zeros(1, u.dtype))[0])  # type: ignore[union-attr]
+    share = 1 - np.exp(-sigma * np.float32(sampler.length))
+    return np.minimum(-np.log(1 - u[:, 0] * share) / sigma, sampler.length)
 
 
 def _chosen_channel(sampler: HomogeneousSpectralFreePath, u: np.ndarray) -> Draw:
@@ -362,6 +392,56 @@ def cases() -> list[SamplerCase]:
             "the density is not divided by the probability of ending there",
             None,
             _not_renormalised,
+        ),
+        _homogeneous(
+            "float32",
+            "Free path in single precision, no surface",
+            2.5,
+            np.inf,
+            "uniforms of 12 bits, which cut the tail off",
+            _coarse,
+            with_cdf=False,
+            precision="float32",
+        ),
+        _homogeneous(
+            "float32/surface",
+            "Free path in single precision before a surface at tau = 2",
+            0.4,
+            5.0,
+            "5 % of the surface events are moved",
+            _leaky_surface,
+            with_cdf=False,
+            precision="float32",
+        ),
+        _graded(
+            "float32/linear",
+            "Free path in single precision, extinction that falls linearly to vacuum",
+            falling,
+            np.inf,
+            "paths that escape are stopped where the medium ends",
+            _nobody_escapes,
+            with_cdf=False,
+            precision="float32",
+        ),
+        _graded(
+            "float32/exponential",
+            "Free path in single precision, upwards through an atmosphere",
+            atmosphere,
+            np.inf,
+            "nobody escapes: the logarithm is clipped",
+            _pole_clipped,
+            with_cdf=False,
+            precision="float32",
+        ),
+        _truncated(
+            "float32",
+            "Free path in single precision that ends before tau = 1e-6",
+            Medium(1e-6, 0.0),
+            1.0,
+            "1 - exp(-depth), whose digits cancel",
+            _cancelling,
+            with_cdf=False,
+            precision="float32",
         ),
         _spectral(
             "unbounded",

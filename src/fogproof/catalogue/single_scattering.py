@@ -10,7 +10,15 @@ import numpy as np
 from fogproof.analytic import single_scattering, single_scattering_variance
 from fogproof.catalogue.cases import Drawn, EstimatorCase, Twin
 from fogproof.contracts import Draws
-from fogproof.estimators import Airlight, EnvironmentAirlight, LitMedium, MarchedAirlight, placer
+from fogproof.estimators import (
+    Airlight,
+    DecoupledAirlight,
+    EnvironmentAirlight,
+    LitMedium,
+    MarchedAirlight,
+    placer,
+    shadow_transmittance,
+)
 from fogproof.scene import (
     AnyMedium,
     DoubleHenyeyGreenstein,
@@ -24,6 +32,7 @@ from fogproof.scene import (
     PointLight,
     Ray,
     Rayleigh,
+    VoxelGrid,
 )
 from fogproof.scene.lights import DirectionalLight, Environment, Light, SpotLight
 from fogproof.scene.occluders import Disk, Sphere
@@ -40,6 +49,17 @@ SUN = DirectionalLight((0.6, 0.0, 0.8), 2.0)
 BALL, BOX = Ball((0.2, 0.1, 0.0), 2.2), Box((-0.7, -0.9, -1.0), (0.7, 0.5, 1.0))
 SLAB, GROUND = Slab((0.0, 0.0, -1.5), (0.0, 0.0, -1.0), 4.0), HalfSpace((0.0, 1.5, 0.0), (-0.6, 0.8, 0.0))
 POST, PLATE = Sphere((0.35, -0.45, 0.4), 0.2), Disk((0.3, -0.4, 0.9), (0.6, -0.8, 0.0), 0.25)
+
+
+def cloud(turned: bool = False, shift: float = 0.0) -> VoxelGrid:
+    """Return a cloud of 6 x 6 x 6 voxels; for twins with its axes exchanged or moved by a part of a voxel."""
+    i, j, k = np.meshgrid(*[np.arange(6)] * 3, indexing="ij")
+    sigma_t = 0.5 + 0.3 * np.cos(1.3 * i) * np.cos(0.9 * j + 1) + 0.2 * np.sin(1.1 * k)
+    lower, upper = np.array([-1.5, -1.5, -2.0]), np.array([1.5, 1.5, 2.5])
+    offset = shift * (upper - lower) / 6
+    grid = sigma_t.transpose(2, 1, 0) if turned else sigma_t
+    return VoxelGrid(grid, lower + offset, upper + offset, "nearest", 0.8, HenyeyGreenstein(0.5))
+
 
 Factor = Callable[[LitMedium, np.ndarray], Any]
 """What a twin multiplies the contribution of each place with."""
@@ -81,12 +101,14 @@ def _case(
         assert isinstance(light, PointLight)
         return single_scattering_variance(medium, ray, light, placing)
 
+    geometry = {key: value for key, value in more.items() if key != "shadow_rays"}
     return EstimatorCase(
         name=f"airlight/{name}",
         title=f"Airlight, {title}",
         make=lambda: Airlight(medium, ray, light, placing, **more),
-        reference=lambda: single_scattering(medium, ray, light, **more),
+        reference=lambda: single_scattering(medium, ray, light, **geometry),
         variance=variance if exact_variance else None,
+        cost=(lambda: 1.0) if exact_variance else None,
         oracle="single_scattering, single_scattering_variance" if exact_variance else "single_scattering",
         source=_SOURCES.get(placing, "volume rendering equation, one-sample estimator"),
         twin=Twin(error, twin or broken),
@@ -102,7 +124,7 @@ def _times(factor: Factor, lit: LitMedium, placing: Any) -> Drawn:
         drawn = places.sample(rng.random((n, 1)))
         inside = np.ones(n, bool) if drawn.event is None else drawn.event == 0
         t = np.where(inside, drawn.x, 0.0)
-        value = lit.seen(t) * lit.scattered(t, rng) / drawn.pdf * factor(lit, t)
+        value = lit.seen(t) * lit.scattered(t, rng)[0] / drawn.pdf * factor(lit, t)
         return Draws(np.where(inside, value, 0.0), cost=np.ones(n))
 
     return Drawn(draw)
@@ -143,6 +165,13 @@ def _albedo_in_shadow(lit: LitMedium, t: np.ndarray) -> np.ndarray:
     return (T + (1 - T) * lit.albedo) / T
 
 
+def _way_to_light_again(lit: LitMedium, t: np.ndarray) -> np.ndarray:
+    x, distance = lit.points(t), _distance(lit, t)
+    assert isinstance(lit.light, PointLight)
+    w = (np.asarray(lit.light.position)[:, None] - x) / distance
+    return shadow_transmittance("exact", lit.medium, x, w, distance)[0]
+
+
 def _only_if_scattered(lit: LitMedium, t: np.ndarray) -> Any:
     """The estimate is added only when another free path has collided, without its probability: the mean of that."""
     return 1 - float(lit.seen(np.array([lit.length]))[0])
@@ -157,8 +186,32 @@ def _march_with_a_term_more() -> Drawn:
         value = np.zeros(n)
         for k in range(steps + 1):
             t = step * (k + rng.random(n))
-            value += step * lit.seen(t) * lit.scattered(t, rng)
+            value += step * lit.seen(t) * lit.scattered(t, rng)[0]
         return Draws(value, cost=np.full(n, float(steps)))
+
+    return Drawn(draw)
+
+
+def _decoupled_case(
+    name: str, title: str, medium: AnyMedium, step: float, error: str, twin: Callable[[], Any], **more: Any
+) -> EstimatorCase:
+    ray = Ray((0.05, 0.03, -3.0), (0.0, 0.0, 1.0), 6.0)
+    return EstimatorCase(
+        name=f"airlight/decoupled/{name}",
+        title=f"Airlight, decoupled marching, {title}",
+        make=lambda: DecoupledAirlight(medium, ray, POINT, step, **more),
+        reference=lambda: single_scattering(medium, ray, POINT),
+        oracle="single_scattering",
+        source="Kulla & Fajardo 2012",
+        twin=Twin(error, twin),
+        samples=300_000,
+    )
+
+
+def _halved(estimator: Any) -> Drawn:
+    def draw(rng: np.random.Generator, n: int) -> Draws:
+        draws = estimator.draw(rng, n)
+        return draws._replace(value=0.5 * np.asarray(draws.value))
 
     return Drawn(draw)
 
@@ -193,7 +246,7 @@ def _along_the_ray(medium: Medium, shape: Any) -> Drawn:
     def draw(rng: np.random.Generator, n: int) -> Draws:
         drawn = places.sample(rng.random((n, 1)))
         ahead = np.broadcast_to(RAY.direction[:, None], (3, n))
-        arriving = 1.3 * lit.transmittance(lit.points(drawn.x), ahead, np.full(n, np.inf), rng)
+        arriving = 1.3 * lit.transmittance(lit.points(drawn.x), ahead, np.full(n, np.inf), rng)[0]
         value = lit.seen(drawn.x) * lit.albedo * lit.extinction.sigma(drawn.x) * arriving / drawn.pdf
         return Draws(value, cost=np.ones(n))
 
@@ -214,6 +267,7 @@ def cases() -> list[EstimatorCase]:
     lobes, murky = fog(DoubleHenyeyGreenstein(0.7, -0.4, 0.65)), fog(Murky())
     rising = LinearMedium(0.3, (0.02, 0.05, 0.1), 0.7, Rayleigh())
     air = ExponentialMedium(0.4, (0.1, -0.2, -0.3), 0.8)
+    through = Ray((0.05, 0.03, -3.0), (0.0, 0.0, 1.0), 6.0)
     return [
         _case(
             "equiangular/isotropic",
@@ -470,6 +524,61 @@ def cases() -> list[EstimatorCase]:
             "one of the two casts no shadow",
             twin=lambda: Airlight(rayleigh, RAY, POINT, "mixed", (POST,)),
             occluders=(POST, Disk((0.2, -0.3, -0.2), (0.6, -0.8, 0.0), 0.3)),
+        ),
+        _case(
+            "equiangular/voxels",
+            "equiangular, cloud of voxels, shadow rays cell by cell",
+            cloud(),
+            POINT,
+            "the axes of the grid are exchanged",
+            twin=lambda: Airlight(cloud(turned=True), through, POINT),
+            ray=through,
+            samples=300_000,
+        ),
+        _case(
+            "equiangular/voxels/ratio",
+            "equiangular, cloud of voxels, shadow rays by ratio tracking",
+            cloud(),
+            POINT,
+            "the grid is moved by a voxel",
+            twin=lambda: Airlight(cloud(shift=1.0), through, POINT, shadow_rays="ratio"),
+            ray=through,
+            samples=300_000,
+            shadow_rays="ratio",
+        ),
+        _case(
+            "equiangular/exponential/ratio",
+            "equiangular, atmosphere, shadow rays by ratio tracking",
+            air,
+            POINT,
+            "the medium is twice as dense on the way to the light",
+            _way_to_light_again,
+            shadow_rays="ratio",
+        ),
+        _decoupled_case(
+            "homogeneous",
+            "homogeneous fog, three steps",
+            rayleigh,
+            2.0,
+            "the density is the sum of both, not the mean",
+            lambda: _halved(DecoupledAirlight(rayleigh, through, POINT, 2.0)),
+        ),
+        _decoupled_case(
+            "voxels",
+            "cloud of voxels, steps of a centimetre",
+            cloud(),
+            0.01,
+            "two steps through the whole cloud",
+            lambda: DecoupledAirlight(cloud(), through, POINT, 2.25),
+        ),
+        _decoupled_case(
+            "voxels/ratio",
+            "cloud of voxels, shadow rays by ratio tracking",
+            cloud(),
+            0.01,
+            "the axes of the grid are exchanged",
+            lambda: DecoupledAirlight(cloud(turned=True), through, POINT, 0.01, shadow_rays="ratio"),
+            shadow_rays="ratio",
         ),
         EstimatorCase(
             name="airlight/march/jittered",
