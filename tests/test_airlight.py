@@ -127,14 +127,15 @@ def test_a_table_is_integrated_between_its_kinks():
 
 
 def test_a_water_drop():
-    """Lorenz-Mie, 10 um: against Simpson's rule in the angle seen from the light, on 400 000 intervals."""
+    """Lorenz-Mie, 10 um: against 2000 Gauss-Legendre nodes in the angle seen from the light."""
     drop, sigma, a, b = Mie(10e-6, 550e-9, 1.33), 0.3, -5.0, 5.0
     reference = airlight_integral(sigma, 1.0, a, b, drop)
-    theta = np.linspace(math.atan(a), math.atan(b), 400_001)
+    x, weights = np.polynomial.legendre.leggauss(2000)
+    theta = math.atan(5.0) * x
     way = np.tan(theta) + 1 / np.cos(theta) - a
     f = np.exp(-sigma * way) * 4 * np.pi * phase_pdf(drop, -np.sin(theta)).value
-    simpson = (f[0] + f[-1] + 4 * f[1::2].sum() + 2 * f[2:-1:2].sum()) * (theta[1] - theta[0]) / 3
-    assert abs(simpson - reference.value) <= reference.error + 1e-13 * simpson
+    other = math.atan(5.0) * float(weights @ f)
+    assert abs(other - reference.value) <= reference.error + 1e-12 * other
     assert reference.error <= 1e-12 * reference.value
 
 
