@@ -5,10 +5,10 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help verify test lint format calibrate oracle-hard bench clean
+.PHONY: help verify test lint format calibrate oracle-hard golden bench clean
 
 help:  ## list the targets
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 verify: $(VENV)/.installed  ## every sampler and estimator against its reference; the page lands in build/report
 	$(BIN)/fogproof verify --report build/report
@@ -34,6 +34,9 @@ oracle-hard: $(VENV)/.installed-test  ## the airlight integral on 10^5 hard case
 
 bench: $(VENV)/.installed-test  ## benchmarks, as ratios of interleaved runs
 	@for script in benchmarks/*.py; do echo "== $$script"; $(BIN)/python $$script || exit 1; done
+
+golden: $(VENV)/.installed-test  ## prove the golden tables again, by ball arithmetic
+	$(BIN)/python tools/make_golden.py --check
 
 clean:  ## remove the environment and everything built
 	rm -rf $(VENV) build

@@ -7,17 +7,30 @@ exact binary64 numbers.
 from fogproof.analytic.airlight import airlight_integral, airlight_table
 from fogproof.analytic.airlight_moments import airlight_second_moment
 from fogproof.analytic.ambient_fog import ambient_fog
+from fogproof.analytic.ball import ball_albedo, ball_albedo_orders, ball_radiance, ball_radiance_orders, ball_source
+from fogproof.analytic.chandrasekhar_h import chandrasekhar_h
 from fogproof.analytic.coefficients import Coefficients, coefficients
 from fogproof.analytic.colour import sky_colour, sun_colour
 from fogproof.analytic.emission import emitted_radiance
+from fogproof.analytic.flights import mean_displacement, mean_square_displacement
 from fogproof.analytic.free_path import free_path
 from fogproof.analytic.furnace import thermal_furnace, white_furnace
+from fogproof.analytic.golden import Golden, golden_values
+from fogproof.analytic.half_space import (
+    half_space_brdf,
+    half_space_reflectance,
+    half_space_reflectance_orders,
+    half_space_spherical_albedo,
+)
+from fogproof.analytic.infinite_medium import point_source_collisions, point_source_fluence
+from fogproof.analytic.mean_path_length import mean_path_length, mean_scatterings
 from fogproof.analytic.phase_functions import phase_cdf, phase_mean_cosine, phase_pdf, phase_quantile
 from fogproof.analytic.radiance import radiance
 from fogproof.analytic.radiance_by_ode import radiance_by_ode
 from fogproof.analytic.radiance_by_quadrature import radiance_by_quadrature
 from fogproof.analytic.rayleigh_atmosphere import air_cross_section, air_optical_depth, plane_parallel_sky
 from fogproof.analytic.rayleigh_coefficient import rayleigh_scattering_coefficient
+from fogproof.analytic.rod import rod_reflectance, rod_reflectance_orders, rod_transmittance, rod_transmittance_orders
 from fogproof.analytic.second_moments import (
     ambient_fog_variance,
     transmittance_lookups,
@@ -26,11 +39,20 @@ from fogproof.analytic.second_moments import (
 )
 from fogproof.analytic.single_scattering import single_scattering
 from fogproof.analytic.single_scattering_moments import single_scattering_second_moment, single_scattering_variance
+from fogproof.analytic.slab import (
+    slab_diffuse_reflectance,
+    slab_diffuse_transmittance,
+    slab_emissivity,
+    slab_reflectance,
+    slab_transmittance,
+)
+from fogproof.analytic.slab_orders import slab_reflectance_orders, slab_transmittance_orders
 from fogproof.analytic.transmittance import optical_thickness, transmittance
 from fogproof.analytic.varying_phase import phase_pdf_at
 
 __all__ = [
     "Coefficients",
+    "Golden",
     "air_cross_section",
     "air_optical_depth",
     "airlight_integral",
@@ -38,9 +60,24 @@ __all__ = [
     "airlight_table",
     "ambient_fog",
     "ambient_fog_variance",
+    "ball_albedo",
+    "ball_albedo_orders",
+    "ball_radiance",
+    "ball_radiance_orders",
+    "ball_source",
+    "chandrasekhar_h",
     "coefficients",
     "emitted_radiance",
     "free_path",
+    "golden_values",
+    "half_space_brdf",
+    "half_space_reflectance",
+    "half_space_reflectance_orders",
+    "half_space_spherical_albedo",
+    "mean_displacement",
+    "mean_path_length",
+    "mean_scatterings",
+    "mean_square_displacement",
     "optical_thickness",
     "phase_cdf",
     "phase_mean_cosine",
@@ -48,14 +85,27 @@ __all__ = [
     "phase_pdf_at",
     "phase_quantile",
     "plane_parallel_sky",
+    "point_source_collisions",
+    "point_source_fluence",
     "radiance",
     "radiance_by_ode",
     "radiance_by_quadrature",
     "rayleigh_scattering_coefficient",
+    "rod_reflectance",
+    "rod_reflectance_orders",
+    "rod_transmittance",
+    "rod_transmittance_orders",
     "single_scattering",
     "single_scattering_second_moment",
     "single_scattering_variance",
     "sky_colour",
+    "slab_diffuse_reflectance",
+    "slab_diffuse_transmittance",
+    "slab_emissivity",
+    "slab_reflectance",
+    "slab_reflectance_orders",
+    "slab_transmittance",
+    "slab_transmittance_orders",
     "sun_colour",
     "thermal_furnace",
     "transmittance",

@@ -215,12 +215,22 @@ def _by_rule(
     w/wt matters to a phase function, so w e^v and wt e^v = wt0 e^-u0 save a division.
     """
     x, weights = RULES[nodes]
-    width = (window.high[which] - window.low[which]) / panels
-    first = np.cumsum(panels) - panels
-    total = int(panels.sum())
-    item = np.repeat(np.arange(len(which)), panels)
-    owner, width_ = which[item], width[item]
-    u0 = window.low[owner] + width_ * (np.arange(total) - first[item])
+    low, high = window.low[which], window.high[which]
+    # Edges of several panels count from the anchor, where the integrand is large: an edge is then off by half an EPS of its
+    # distance from there, and not of the length of the whole window.
+    split = panels > 1
+    extent = np.where(split, high - low, 1.0)
+    below = np.where(split, np.ceil(panels * (-low / extent)), 0).astype(np.intp)
+    above = np.where(split, np.ceil(panels * (high / extent)), 1).astype(np.intp)
+    start = np.where(split, 0.0, low)
+    widths = -low / np.maximum(below, 1), (high - start) / np.maximum(above, 1)
+    first = np.cumsum(below + above) - below - above
+    total = int((below + above).sum())
+    item = np.repeat(np.arange(len(which)), below + above)
+    panel = np.arange(total) - (first + below)[item]
+    width_ = np.where(panel < 0, widths[0][item], widths[1][item])
+    u0 = start[item] + panel * width_
+    owner = which[item]
     k, grown = window.k[owner], np.exp(u0)
     before = np.exp(-k * np.expm1(u0))
     k, w0, wt0 = -k * grown, window.w0[owner] * grown, window.wt0[owner] / grown
@@ -252,7 +262,7 @@ def _by_rule(
                 parts[2, block] = weights @ (f * noise)
             f *= factor
         parts[0, block] = weights @ f
-    parts *= before
+    parts *= 2 * before * width_
     if total > len(which):
         parts = np.add.reduceat(parts, first, axis=1)
-    return 2 * width * parts
+    return parts

@@ -129,3 +129,17 @@ def test_a_conversation_over_a_pipe():
             assert json.loads(oracle.stdout.readline())["value"] > 0
         oracle.stdin.close()
         assert oracle.wait(timeout=60) == 0
+
+
+PROVEN = [request for request in REQUESTS if "rigorous" in quantities()[request["quantity"]].arguments]
+
+
+@pytest.mark.parametrize("request_", PROVEN, ids=lambda r: r["quantity"])
+def test_a_proven_enclosure_lies_within_the_ordinary_answer(request_):
+    ordinary, proven = (answer_text(json.dumps(request_), rigorous) for rigorous in (False, True))
+    assert "ball" in proven["method"].lower()
+    assert np.all(np.abs(ordinary["value"] - proven["value"]) + proven["error"] <= ordinary["error"] + 1e-300)
+
+
+def test_what_has_no_proof_says_so():
+    assert answer_text(json.dumps(PHASE), True)["error"]["code"] == "unsupported"

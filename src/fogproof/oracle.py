@@ -12,7 +12,7 @@ from __future__ import annotations
 import json
 from typing import Any, Literal
 
-from fogproof.errors import FogproofError, InvalidInputError, shorten
+from fogproof.errors import FogproofError, InvalidInputError, UnsupportedError, shorten
 from fogproof.quantities import quantities
 from fogproof.scene import Medium
 from fogproof.scene.files import input_model, read_fields
@@ -88,8 +88,11 @@ def schema() -> dict[str, Any]:
     }
 
 
-def answer(request: Any) -> dict[str, Any]:
-    """Answer one request; raises `FogproofError` for a bad one. The value is not yet JSON-ready where it is infinite."""
+def answer(request: Any, rigorous: bool = False) -> dict[str, Any]:
+    """Answer one request; raises `FogproofError` for a bad one. The value is not yet JSON-ready where it is infinite.
+
+    rigorous  answer with an enclosure proven by ball arithmetic, whatever the request says
+    """
     if not isinstance(request, dict):
         raise InvalidInputError(f"request: must be a JSON object, got {shorten(request)}")
     if "quantity" not in request:
@@ -101,6 +104,11 @@ def answer(request: Any) -> dict[str, Any]:
             f"request: quantity {shorten(name)} is not known; known are {', '.join(quantities())}", "quantity"
         )
     arguments = {key: value for key, value in request.items() if key not in ("quantity", "id")}
+    if rigorous:
+        if "rigorous" not in known.arguments:
+            proven = [name for name, quantity in quantities().items() if "rigorous" in quantity.arguments]
+            raise UnsupportedError(f"{name} has no proven enclosure; {', '.join(proven)} have", "quantity")
+        arguments["rigorous"] = True
     result = known.function(**read_fields(known.arguments, arguments, "request"))
     return {
         "protocol": PROTOCOL,
@@ -115,7 +123,7 @@ def answer(request: Any) -> dict[str, Any]:
     }
 
 
-def answer_text(text: str) -> dict[str, Any]:
+def answer_text(text: str, rigorous: bool = False) -> dict[str, Any]:
     """Answer a request given as JSON text: the answer, or `{"error": {"code", "message", "path"}}`."""
     request: Any = None
     try:
@@ -123,7 +131,7 @@ def answer_text(text: str) -> dict[str, Any]:
             request = json.loads(text)
         except (json.JSONDecodeError, RecursionError) as error:
             raise InvalidInputError(f"request is not valid JSON: {error}") from None
-        return answer(request)
+        return answer(request, rigorous)
     except FogproofError as error:
         named = {"id": request["id"]} if isinstance(request, dict) and "id" in request else {}
         return {"protocol": PROTOCOL, **named, "error": error.to_dict()}

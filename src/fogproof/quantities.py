@@ -41,12 +41,18 @@ def quantities() -> dict[str, Quantity]:
     airlight = {"sigma_t": FloatArray, "h": FloatArray, "a": FloatArray, "b": FloatArray}
     phase = {"phase": PhaseFunctionField}
     how = {"method": (Method, "asinh")}
+    proof = {"rigorous": (bool, False)}
     tracker = {"tracking": Tracking, "majorant": (Channels | None, None), "control": (Channels, 0.0)}
     radiance = "W/(m^2 sr)"
     return {
-        "optical_thickness": Quantity(analytic.optical_thickness, scene, "1", "integral of sigma_t along the ray"),
+        "optical_thickness": Quantity(
+            analytic.optical_thickness, {**scene, **proof}, "1", "integral of sigma_t along the ray"
+        ),
         "transmittance": Quantity(
-            analytic.transmittance, scene, "1", "fraction of the radiance that arrives: exp(-optical thickness)"
+            analytic.transmittance,
+            {**scene, **proof},
+            "1",
+            "fraction of the radiance that arrives: exp(-optical thickness)",
         ),
         "free_path": Quantity(
             analytic.free_path,
@@ -56,13 +62,13 @@ def quantities() -> dict[str, Quantity]:
         ),
         "ambient_fog": Quantity(
             analytic.ambient_fog,
-            {**scene, "ambient": (Channels, 0.0), "background": (Channels, 0.0)},
+            {**scene, "ambient": (Channels, 0.0), "background": (Channels, 0.0), **proof},
             radiance,
             "in-scattered radiance constant along the ray; emission is multiplied by sigma_a",
         ),
         "emitted_radiance": Quantity(
             analytic.emitted_radiance,
-            {**scene, "times_sigma_a": (bool, True)},
+            {**scene, "times_sigma_a": (bool, True), **proof},
             radiance,
             "times_sigma_a: the medium's emission is L_e and is multiplied by sigma_a; otherwise it is a power per volume",
         ),
@@ -117,7 +123,7 @@ def quantities() -> dict[str, Quantity]:
         ),
         "airlight_integral": Quantity(
             analytic.airlight_integral,
-            {**airlight, "phase": (PhaseFunctionField, Isotropic()), **how},
+            {**airlight, "phase": (PhaseFunctionField, Isotropic()), **how, **proof},
             "1/m",
             "integral over t in [a, b] of exp(-sigma_t ((t - a) + r)) / r^2 4 pi f_p(-t/r), r^2 = t^2 + h^2",
         ),

@@ -52,10 +52,10 @@ def _cancelling(sampler: Cosines, u: np.ndarray) -> np.ndarray:
     return (1 + g * g - s * s) / (2 * g) if abs(g) > 1e-16 else 2 * u[:, 0] - 1
 
 
-def _one_power_less(sampler: Cosines, u: np.ndarray) -> np.ndarray:
-    """u = xi^(1/n), the root of one power less than the cdf has."""
+def _two_powers_less(sampler: Cosines, u: np.ndarray) -> np.ndarray:
+    """u = xi^(1/n), the root of two powers less than the cdf has."""
     v = np.abs(2 * u[:, 0] - 1)
-    return 2 * np.where(u[:, 0] < 0.5, v, v ** (1 / 32)) - 1
+    return 2 * np.where(u[:, 0] < 0.5, v, v ** (1 / 31)) - 1
 
 
 def _lobe_always(sampler: Cosines, u: np.ndarray) -> np.ndarray:
@@ -105,7 +105,7 @@ def cases() -> list[SamplerCase]:
             _from(Schlick(-0.78)),
         ),
         _case("hazy", "Hazy cosine", Hazy(), nishita, "the isotropic half is forgotten in the sampler", _lobe_always),
-        _case("murky", "Murky cosine", Murky(), nishita, "the root 1/32 in place of 1/33", _one_power_less),
+        _case("murky", "Murky cosine", Murky(), nishita, "the root 1/31 in place of 1/33", _two_powers_less),
         _case(
             "cornette-shanks",
             "Cornette-Shanks cosine, g = -0.5",

@@ -44,12 +44,11 @@ DROPLET = Mie(1.2e-6, 550e-9, 1.333)
 """A water droplet of size parameter 6.9."""
 
 
-def oracle_pdf(phase: PhaseFunction, axis: Axis) -> Callable[[np.ndarray], Reference]:
+def oracle_pdf(phase: PhaseFunction, axis: Axis, rounding: float = 2e-15) -> Callable[[np.ndarray], Reference]:
     """Return x (n, 3) -> the oracle's density of directions about `axis` [1/sr].
 
     A direction in floating point fixes its cosine only to a few roundings: what that changes is part of the error.
     """
-    rounding = 2e-15
 
     def reference(x: np.ndarray) -> Reference:
         mu = x @ np.asarray(axis)
@@ -89,7 +88,7 @@ def direction_case(
     """Return the case of a direction sampler: its pdf is the oracle's, and forward means forward."""
     axis = more.pop("axis", POLE)
     options = {"axis": axis, "mean_cosine": mean, **more.pop("options", {})}
-    reference = oracle_pdf(phase, axis)
+    reference = oracle_pdf(phase, axis, 4e-7 if options.get("precision") == "float32" else 2e-15)
     return SamplerCase(
         name=name,
         title=title,
@@ -114,8 +113,9 @@ def _case(
     *,
     axis: Axis = POLE,
     twin: Callable[[], Any] | None = None,
+    **options: Any,
 ) -> SamplerCase:
-    """Return the case of `Directions(phase, axis)`.
+    """Return the case of `Directions(phase, axis)`; `options` are of `check_sampler`.
 
     The twin is the subject with `sample` or `pdf` replaced, unless `twin` makes another.
     """
@@ -126,7 +126,9 @@ def _case(
     tilt = {TILTED: ", about a tilted axis", NEARLY_DOWN: ", about an axis 1e-8 from -z"}.get(axis, "")
     broken = Twin(error, twin or (lambda: Altered(make(), sample, pdf)))
     mean = float(phase_mean_cosine(phase).value)
-    return direction_case(f"directions/{name}", title + tilt, phase, mean, make, broken, source, axis=axis)
+    return direction_case(
+        f"directions/{name}", title + tilt, phase, mean, make, broken, source, axis=axis, options=options
+    )
 
 
 def _henyey_greenstein(
@@ -420,6 +422,54 @@ def cases() -> list[Case]:
             None,
             _unweighted_component,
             axis=TILTED,
+        ),
+        _case(
+            "float32/henyey-greenstein",
+            "Henyey-Greenstein directions in single precision, g = 1e-6",
+            HenyeyGreenstein(1e-6),
+            "Henyey & Greenstein 1941",
+            "the textbook inverse, whose digits cancel long before g = 0",
+            _textbook,
+            precision="float32",
+        ),
+        _case(
+            "float32/henyey-greenstein/sharp",
+            "Henyey-Greenstein directions in single precision, g = 0.98",
+            HenyeyGreenstein(0.98),
+            "Henyey & Greenstein 1941",
+            "uniforms of 12 bits",
+            lambda sampler, u: sampler.sample(np.floor(4096 * u) / 4096).x,
+            axis=TILTED,
+            precision="float32",
+        ),
+        _case(
+            "float32/rayleigh",
+            "Rayleigh directions in single precision",
+            Rayleigh(),
+            "Rayleigh 1871",
+            "the azimuth is drawn once for sixty-four directions",
+            lambda sampler, u: sampler.sample(np.stack([u[:, 0], np.repeat(u[::64, 1], 64)[: len(u)]], axis=-1)).x,
+            precision="float32",
+        ),
+        _case(
+            "float32/hazy",
+            "Hazy atmosphere in single precision",
+            Hazy(),
+            nishita,
+            "the power of the murky atmosphere in the sampler",
+            _from(Murky()),
+            axis=TILTED,
+            precision="float32",
+        ),
+        _case(
+            "float32/schlick",
+            "Schlick directions in single precision, k = -0.9",
+            Schlick(-0.9),
+            schlick,
+            "the sampler has k = -0.88",
+            _from(Schlick(-0.88)),
+            axis=TILTED,
+            precision="float32",
         ),
         direction_case(
             "directions/lorenz-mie",
