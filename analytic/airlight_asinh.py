@@ -44,6 +44,9 @@ positive terms (5), the attenuation up to the anchor (4)."""
 BLOCK = 16384
 """Nodes evaluated at a time, so that the temporaries stay in the cache."""
 
+ROWS = 8192
+"""Segments at a time, for the same reason."""
+
 METHOD = "Gauss-Legendre 28 in asinh(t/h)"
 SOURCE = "Sun et al. 2005, eq. 5, with t = h sinh s; tails bounded by log-concavity"
 
@@ -67,6 +70,14 @@ class Gain(NamedTuple):
 
 def integrate(segments: Segments, phase: AirlightPhase, gain: Gain | None = None) -> tuple[np.ndarray, np.ndarray]:
     """Return the integral over each segment and a bound of its error, (n,) both; inf where the light is on it."""
+    count = len(segments.h)
+    if count > ROWS:
+        value, error = np.empty((2, count))
+        for i in range(0, count, ROWS):
+            block = slice(i, i + ROWS)
+            some = Segments(*(x[block] for x in segments))
+            value[block], error[block] = integrate(some, phase, gain.of(np.arange(count)[block]) if gain else None)
+        return value, error
     if phase.kinks.size:
         return _between_kinks(segments, phase, gain)
     exact = phase.absolute == 0 and phase.floor > 0 and not phase.noisy and gain is None

@@ -19,6 +19,7 @@ import numpy as np
 
 from fogproof.analytic.airlight_phase import airlight_phase
 from fogproof.analytic.error_free import EPS, TINY
+from fogproof.errors import UnsupportedError, shorten
 from fogproof.scene.phase_functions import PhaseFunction
 
 METHOD = "equiangular Gauss-Legendre 128"
@@ -31,6 +32,9 @@ def integrate(
     sigma: np.ndarray, h: np.ndarray, a: np.ndarray, b: np.ndarray, phase: PhaseFunction
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the integral over each segment, and an estimate of its error."""
+    known = airlight_phase(phase)
+    if known.kinks.size or known.degree > 64:
+        raise UnsupportedError(f"128 nodes do not resolve the phase function {shorten(phase)}", "phase")
     blocks = [slice(i, i + BLOCK) for i in range(0, len(h), BLOCK)]
     parts = [_block(sigma[i], h[i], a[i], b[i], phase) for i in blocks]
     value, error = np.concatenate(parts, axis=1) if parts else np.empty((2, 0))

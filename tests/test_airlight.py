@@ -17,7 +17,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from media_truth import within
 
-from fogproof.analytic import airlight_integral, airlight_table
+from fogproof.analytic import airlight_integral, airlight_table, phase_pdf
 from fogproof.errors import InvalidValueError
 from fogproof.scene import (
     CornetteShanks,
@@ -26,6 +26,7 @@ from fogproof.scene import (
     Hazy,
     HenyeyGreenstein,
     Isotropic,
+    Mie,
     Mixture,
     Murky,
     Rayleigh,
@@ -132,6 +133,19 @@ def test_a_table_is_integrated_between_its_kinks():
             return mp.exp(-sigma * (t - a + r)) / r**2 * F
 
         within(reference, mp.quad(piece, [a, -3, knee]) + mp.quad(piece, [knee, 0]))
+
+
+def test_a_water_drop():
+    """Lorenz-Mie, 10 um: against 2000 Gauss-Legendre nodes in the angle seen from the light."""
+    drop, sigma, a, b = Mie(10e-6, 550e-9, 1.33), 0.3, -5.0, 5.0
+    reference = airlight_integral(sigma, 1.0, a, b, drop)
+    x, weights = np.polynomial.legendre.leggauss(2000)
+    theta = math.atan(5.0) * x
+    way = np.tan(theta) + 1 / np.cos(theta) - a
+    f = np.exp(-sigma * way) * 4 * np.pi * phase_pdf(drop, -np.sin(theta)).value
+    other = math.atan(5.0) * float(weights @ f)
+    assert abs(other - reference.value) <= reference.error + 1e-12 * other
+    assert reference.error <= 1e-12 * reference.value
 
 
 @given(powers(-9, 2.5), powers(-6, 2), powers(-6, 2), st.booleans(), st.booleans(), phases)

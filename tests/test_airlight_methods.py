@@ -103,6 +103,7 @@ def test_the_light_on_the_segment_is_infinite_by_every_method(method):
         ("pegoraro2009", (1.0, 1e-14, 5.0, 6.0), Isotropic()),  # light far behind
         ("pegoraro2010", (1.0, 1.0, -1.0, 1.0), HenyeyGreenstein(0.95)),  # too many terms
         ("equiangular", (100.0, 1e-8, -1e-3, 30.0), HenyeyGreenstein(-0.9999)),
+        ("equiangular", (1.0, 1.0, -1.0, 1.0), Tabulated.normalised((-1, 0, 1), (1, 2, 1))),
         ("sun2005", (1.0, 1.0, -1.0, 1.0), Rayleigh()),
         ("pegoraro2009", (1.0, 1.0, -1.0, 1.0), HenyeyGreenstein(0.1)),
         ("pegoraro2010", (1.0, 1.0, -1.0, 1.0), Tabulated((-1, 1), (1 / (4 * np.pi),) * 2)),
