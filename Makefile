@@ -5,7 +5,7 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help verify test lint format calibrate bench clean
+.PHONY: help verify test lint format calibrate bench golden clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -31,6 +31,9 @@ calibrate: $(VENV)/.installed-test  ## how often the checks reject what is right
 
 bench: $(VENV)/.installed-test  ## benchmarks, as ratios of interleaved runs
 	@for script in benchmarks/*.py; do echo "== $$script"; $(BIN)/python $$script || exit 1; done
+
+golden: $(VENV)/.installed-test  ## prove the golden tables again, by ball arithmetic
+	$(BIN)/python tools/make_golden.py --check
 
 clean:  ## remove the environment and everything built
 	rm -rf $(VENV) build

@@ -10,10 +10,12 @@ from fogproof.analytic.ambient_fog import ambient_fog
 from fogproof.analytic.ball import ball_albedo, ball_albedo_orders, ball_radiance, ball_radiance_orders, ball_source
 from fogproof.analytic.chandrasekhar_h import chandrasekhar_h
 from fogproof.analytic.coefficients import Coefficients, coefficients
+from fogproof.analytic.colour import sky_colour, sun_colour
 from fogproof.analytic.emission import emitted_radiance
 from fogproof.analytic.flights import mean_displacement, mean_square_displacement
 from fogproof.analytic.free_path import free_path
 from fogproof.analytic.furnace import thermal_furnace, white_furnace
+from fogproof.analytic.golden import Golden, golden_values
 from fogproof.analytic.half_space import (
     half_space_brdf,
     half_space_reflectance,
@@ -26,6 +28,7 @@ from fogproof.analytic.phase_functions import phase_cdf, phase_mean_cosine, phas
 from fogproof.analytic.radiance import radiance
 from fogproof.analytic.radiance_by_ode import radiance_by_ode
 from fogproof.analytic.radiance_by_quadrature import radiance_by_quadrature
+from fogproof.analytic.rayleigh_atmosphere import air_cross_section, air_optical_depth, plane_parallel_sky
 from fogproof.analytic.rayleigh_coefficient import rayleigh_scattering_coefficient
 from fogproof.analytic.rod import rod_reflectance, rod_reflectance_orders, rod_transmittance, rod_transmittance_orders
 from fogproof.analytic.second_moments import (
@@ -50,6 +53,9 @@ from fogproof.analytic.varying_phase import phase_pdf_at
 
 __all__ = [
     "Coefficients",
+    "Golden",
+    "air_cross_section",
+    "air_optical_depth",
     "airlight_integral",
     "airlight_second_moment",
     "airlight_table",
@@ -64,6 +70,7 @@ __all__ = [
     "coefficients",
     "emitted_radiance",
     "free_path",
+    "golden_values",
     "half_space_brdf",
     "half_space_reflectance",
     "half_space_reflectance_orders",
@@ -78,6 +85,7 @@ __all__ = [
     "phase_pdf",
     "phase_pdf_at",
     "phase_quantile",
+    "plane_parallel_sky",
     "point_source_collisions",
     "point_source_fluence",
     "radiance",
@@ -92,6 +100,7 @@ __all__ = [
     "single_scattering_second_moment",
     "single_scattering_variance",
     "slab_brdf",
+    "sky_colour",
     "slab_diffuse_reflectance",
     "slab_diffuse_transmittance",
     "slab_emissivity",
@@ -99,6 +108,7 @@ __all__ = [
     "slab_reflectance_orders",
     "slab_transmittance",
     "slab_transmittance_orders",
+    "sun_colour",
     "thermal_furnace",
     "transmittance",
     "transmittance_lookups",

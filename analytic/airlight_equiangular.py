@@ -40,7 +40,7 @@ def integrate(
 def _block(sigma: np.ndarray, h: np.ndarray, a: np.ndarray, b: np.ndarray, phase: PhaseFunction) -> np.ndarray:
     first, last = np.arctan2(a, h), np.arctan2(b, h)
     width = np.arctan2(h * (b - a), h * h + a * b)
-    width = np.where(b < np.inf, width, np.pi / 2 - first)
+    width = np.where(b < np.inf, width, np.arctan2(h, a))  # not pi/2 - first, which cancels
     factor = airlight_phase(phase)
     (coarse, coarse_weights), (fine, weights) = _rule(64), _rule(128)
     left, right = _ends()

@@ -6,12 +6,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fogproof.analytic.vectors import norm
+
 
 class Segments(NamedTuple):
     """Pieces [start, end] of rays whose cameras are at a, all (n,).
 
-    `x_low` is what the rounded x lacks; it matters for the attenuation over many mean free paths. `length` is end - start,
-    more accurate than the difference where the caller knows better.
+    `x_low` is what the rounded x lacks; it matters for the attenuation over many mean free paths. `near` is the distance of
+    the light from the start, `length` is end - start, more accurate than the difference where the caller knows better.
     """
 
     sigma: np.ndarray
@@ -23,12 +25,14 @@ class Segments(NamedTuple):
     start: np.ndarray
     end: np.ndarray
     length: np.ndarray
+    near: np.ndarray
+    near_low: np.ndarray
 
 
 def whole(sigma: np.ndarray, h: np.ndarray, a: np.ndarray, b: np.ndarray) -> Segments:
     """Return rays from the camera at a to b, all numbers exact."""
     zero = np.zeros(h.shape)
-    return Segments(sigma, zero, h, zero, a, zero, a, b, b - a)
+    return Segments(sigma, zero, h, zero, a, zero, a, b, b - a, *norm((a, h), (zero, zero)))
 
 
 def cut(segments: Segments, places: np.ndarray) -> tuple[Segments, np.ndarray]:
@@ -43,4 +47,6 @@ def cut(segments: Segments, places: np.ndarray) -> tuple[Segments, np.ndarray]:
     low, high = edges[owner, k], edges[owner, k + 1]
     pieces = Segments(*(x[owner] for x in segments))
     uncut = (low == pieces.start) & (high == pieces.end)
-    return pieces._replace(start=low, end=high, length=np.where(uncut, pieces.length, high - low)), owner
+    near, near_low = norm((low, pieces.h), (np.where(low == pieces.a, pieces.a_low, 0.0), pieces.h_low))
+    length = np.where(uncut, pieces.length, high - low)
+    return pieces._replace(start=low, end=high, length=length, near=near, near_low=near_low), owner

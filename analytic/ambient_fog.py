@@ -10,6 +10,7 @@ from fogproof.analytic.compositing import composite
 from fogproof.analytic.error_free import EPS, TINY
 from fogproof.analytic.plane_crossings import is_trilinear
 from fogproof.analytic.radiance_by_quadrature import radiance_by_quadrature
+from fogproof.analytic.rigorous import proven_radiance
 from fogproof.analytic.thickness import channels_of
 from fogproof.analytic.transmittance import survival, thickness
 from fogproof.contracts import Reference
@@ -19,13 +20,16 @@ from fogproof.validate import nonnegative_channels
 SOURCE = "Chandrasekhar 1960, Radiative Transfer, section 7, with a constant source function"
 
 
-def ambient_fog(medium: AnyMedium, ray: Ray, ambient: Any = 0.0, background: Any = 0.0) -> Reference:
+def ambient_fog(
+    medium: AnyMedium, ray: Ray, ambient: Any = 0.0, background: Any = 0.0, *, rigorous: bool = False
+) -> Reference:
     """Return the radiance that reaches the camera [W/(m^2 sr)], shape R or R + (channels,).
 
         L = L_bg e^{-tau} + s (sigma_s L_i + sigma_a L_e) phi1(tau),   phi1(x) = (1 - e^{-x})/x
 
     ambient     L_i, in-scattered radiance taken as constant [W/(m^2 sr)], grey or one value a channel
     background  L_bg, radiance of the surface at the ray's end [W/(m^2 sr)]; L_e is the medium's emission
+    rigorous    prove the result by ball arithmetic (any medium but a `Procedural` one; slow)
 
     Computed as a lerp with the three weights e^{-tau}, albedo (1 - e^{-tau}) and (1 - albedo)(1 - e^{-tau}), each
     without cancellation: none exceeds 1, so neither an empty medium (which shows the background) nor an infinite ray
@@ -36,6 +40,8 @@ def ambient_fog(medium: AnyMedium, ray: Ray, ambient: Any = 0.0, background: Any
     ambient = nonnegative_channels("ambient", ambient, "W/(m^2 sr)")
     background = nonnegative_channels("background", background, "W/(m^2 sr)")
     channels = channels_of(medium, ambient=ambient, background=background)
+    if rigorous:
+        return proven_radiance(medium, ray, ambient, background).reference()
     if callable(medium.albedo) or callable(medium.emission):
         return radiance_by_quadrature(medium, ray, ambient, background)
     if isinstance(medium, PiecewiseConstantMedium | VoxelGrid) and np.ndim(medium.albedo) + np.ndim(medium.emission):

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fogproof.analytic.error_free import EPS
-from fogproof.scene import Ray
+from fogproof.analytic.flat_rays import FlatRays
 from fogproof.scene.shapes import Ball, Box, HalfSpace, Shape, Slab, Unbounded
 
 
@@ -36,9 +36,9 @@ class Chord(NamedTuple):
     end: np.ndarray
 
 
-def chord(shape: Shape, ray: Ray) -> Chord:
+def chord(shape: Shape, ray: FlatRays) -> Chord:
     """Return where the flattened rays are in the shape, with a margin for the rounding of all coordinates."""
-    origin, direction, length = ray.origin.reshape(-1, 3), ray.direction.reshape(-1, 3), ray.length.ravel()
+    origin, direction, length = ray.origin, ray.direction, ray.length
     if isinstance(shape, Unbounded):
         zero = np.zeros(length.shape)
         return Chord(zero, zero, length, length)

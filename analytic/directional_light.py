@@ -16,11 +16,12 @@ import numpy as np
 from fogproof.analytic.airlight_phase import airlight_phase
 from fogproof.analytic.convex_shapes import Chord, chord, faces
 from fogproof.analytic.error_free import EPS, TINY
+from fogproof.analytic.flat_rays import FlatRays
 from fogproof.analytic.gauss_legendre import NODES, WEIGHTS
 from fogproof.analytic.phase_functions import phase_pdf
 from fogproof.analytic.shadows import Shadow, shadow_of_direction
 from fogproof.errors import UnsupportedError
-from fogproof.scene import Medium, Ray
+from fogproof.scene import Medium
 from fogproof.scene.lights import DirectionalLight
 from fogproof.scene.occluders import Occluder
 from fogproof.scene.shapes import Ball, Shape, Unbounded
@@ -32,7 +33,7 @@ LARGEST_DEPTH = 2e4
 
 
 def directional_light(
-    medium: Medium, ray: Ray, light: DirectionalLight, shape: Shape, occluders: Sequence[Occluder]
+    medium: Medium, ray: FlatRays, light: DirectionalLight, shape: Shape, occluders: Sequence[Occluder]
 ) -> tuple[np.ndarray, np.ndarray, str, str]:
     """Return the radiance (n, channels) along the flattened rays, its error, method and source."""
     sigma = np.atleast_1d(medium.sigma_t)
@@ -56,7 +57,7 @@ def directional_light(
         error = gather(errors + parts * (1 - weight[:, None])) + (4 + len(occluders)) * EPS * value
         error = error + value * np.expm1(sigma * (inside.sure_start - inside.start)[:, None])
 
-        mu = np.clip(-(ray.direction.reshape(-1, 3) @ np.array(light.direction)), -1, 1)
+        mu = np.clip(-(ray.direction @ np.array(light.direction)), -1, 1)
         f = phase_pdf(medium.phase, mu)
         slope, steep = airlight_phase(medium.phase).slope(mu - 4 * EPS, mu + 4 * EPS)
         f_error = f.error + 4 * EPS * (slope * f.value + steep)
@@ -68,7 +69,7 @@ def directional_light(
 
 
 def _pieces(
-    shape: Shape, ray: Ray, light: DirectionalLight, inside: Chord, shadows: list[Shadow]
+    shape: Shape, ray: FlatRays, light: DirectionalLight, inside: Chord, shadows: list[Shadow]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Return start and end [m], ray, and the weight (1, or 1/2 where unsure) of the lit pieces between all breaks."""
     start, end = inside.start[:, None], inside.end[:, None]
@@ -90,21 +91,21 @@ def _pieces(
     return low[lit], high[lit], owner[lit], weight[lit]
 
 
-def _ways_back(shape: Shape, ray: Ray, light: DirectionalLight) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _ways_back(shape: Shape, ray: FlatRays, light: DirectionalLight) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return (n, k) offsets and slopes of the linear ways back to each face the light can come in by, and their scale.
 
     The way back from the point at t is the least of offset + slope t; none means that no light comes in at all.
     """
     normals, offsets = faces(shape)
     facing = -(normals @ np.array(light.direction))
-    entered = facing > 0
+    entered = facing > 1e-150  # a face edge-on is infinitely far
     normals, offsets, facing = normals[entered], offsets[entered], facing[entered]
-    origin, d = ray.origin.reshape(-1, 3), ray.direction.reshape(-1, 3)
+    origin, d = ray.origin, ray.direction
     size = np.abs(origin).sum(axis=1)[:, None] + np.abs(offsets)
     return (offsets - origin @ normals.T) / facing, -(d @ normals.T) / facing, size / facing
 
 
-def _changes_of_face(shape: Shape, ray: Ray, light: DirectionalLight) -> np.ndarray:
+def _changes_of_face(shape: Shape, ray: FlatRays, light: DirectionalLight) -> np.ndarray:
     """Return (n, m) places where two faces are equally far."""
     offset, slope, _ = _ways_back(shape, ray, light)
     i, j = np.triu_indices(offset.shape[1], 1)
@@ -113,7 +114,7 @@ def _changes_of_face(shape: Shape, ray: Ray, light: DirectionalLight) -> np.ndar
 
 def _polyhedron(
     shape: Shape,
-    ray: Ray,
+    ray: FlatRays,
     light: DirectionalLight,
     sigma: np.ndarray,
     start: np.ndarray,
@@ -137,12 +138,14 @@ def _polyhedron(
     reach = np.where(length[:, None] < np.inf, length[:, None] * mean, 1 / (sigma * np.abs(growth)[:, None]))
     value = np.exp(-sigma * path[:, None]) * reach
     uncertain = 16 * EPS * (size + np.abs(slope * nearer) + np.abs(nearer))
-    return value, value * (np.expm1(sigma * uncertain[:, None]) + 16 * EPS) + TINY
+    # The way may be shorter by that, which is a lot only where the light grazes a face.
+    at_most = np.exp(-sigma * np.maximum(path - uncertain, 0.0)[:, None]) * reach
+    return value, (at_most - value) + (np.minimum(sigma * uncertain[:, None], 1.0) + 16 * EPS) * value + TINY
 
 
 def _ball(
     shape: Shape,
-    ray: Ray,
+    ray: FlatRays,
     light: DirectionalLight,
     sigma: np.ndarray,
     start: np.ndarray,
@@ -157,15 +160,17 @@ def _ball(
         raise UnsupportedError(
             f"parallel light in a ball of optical radius {R * sigma.max():g} > {LARGEST_DEPTH:g}", "shape"
         )
-    origin, d = ray.origin.reshape(-1, 3)[owner] - np.array(shape.center), ray.direction.reshape(-1, 3)[owner]
+    origin, d = ray.origin[owner] - np.array(shape.center), ray.direction[owner]
     Q0, Q1 = np.cross(origin, v), np.cross(d, v)
     bend = np.sum(Q1 * Q1, axis=1)
     middle = np.where(bend > 0, -np.sum(Q0 * Q1, axis=1) / bend, 0.0)
     nearest = Q0 + middle[:, None] * Q1
     radius = np.sqrt(np.maximum(R * R - np.sum(nearest * nearest, axis=1), 0.0) / bend)
-    bent = radius < 4 * R  # else the root is nearly straight over the ball, and smooth
-    low = np.where(bent, np.arcsin(np.clip((start - middle) / radius, -1, 1)), start)
-    high = np.where(bent, np.arcsin(np.clip((end - middle) / radius, -1, 1)), end)
+    # For a larger radius the root is nearly straight over the ball, and smooth; for a tiny one the ray just touches it.
+    bent = (radius < 4 * R) & (radius > EPS * R)
+    first, last = (np.clip((t - middle) / np.where(bent, radius, 1.0), -1, 1) for t in (start, end))
+    low, high = np.where(bent, np.arcsin(first), start), np.where(bent, np.arcsin(last), end)
+    lost = np.where(bent, np.maximum((end - start) - radius * (last - first), 0.0), 0.0)  # at the margins
     panels = np.ceil(2 + sigma.max() * (end - start) / 4).astype(int)
     value, error = np.zeros((2, len(owner), len(sigma)))
     for i in range(len(owner)):
@@ -182,5 +187,5 @@ def _ball(
         blur = 16 * EPS * (np.abs(origin[i]).max() + R) * (2 + np.minimum(R / half, EPS**-0.5))
         f = np.exp(-sigma[:, None, None] * path) * weights
         value[i] = f.sum(axis=(1, 2))
-        error[i] = (f * np.expm1(sigma[:, None, None] * blur)).sum(axis=(1, 2)) + 64 * EPS * value[i]
+        error[i] = (f * np.expm1(sigma[:, None, None] * blur)).sum(axis=(1, 2)) + 64 * EPS * value[i] + lost[i]
     return value, error + TINY

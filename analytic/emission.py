@@ -9,6 +9,7 @@ from fogproof.analytic.compositing import composite, phi1
 from fogproof.analytic.error_free import ELEMENTARY, EPS, TINY
 from fogproof.analytic.plane_crossings import is_trilinear
 from fogproof.analytic.radiance_by_quadrature import radiance_by_quadrature
+from fogproof.analytic.rigorous import proven_radiance
 from fogproof.analytic.thickness import channels_of, rays_with_channels
 from fogproof.analytic.transmittance import thickness
 from fogproof.contracts import Reference
@@ -17,16 +18,19 @@ from fogproof.scene import AnisotropicMedium, AnyMedium, Medium, PiecewiseConsta
 SOURCE = "Chandrasekhar 1960, Radiative Transfer, section 7"
 
 
-def emitted_radiance(medium: AnyMedium, ray: Ray, *, times_sigma_a: bool = True) -> Reference:
+def emitted_radiance(medium: AnyMedium, ray: Ray, *, times_sigma_a: bool = True, rigorous: bool = False) -> Reference:
     """Return the radiance that the medium itself sends to the camera [W/(m^2 sr)], shape R or R + (channels,).
 
     times_sigma_a  True: int T sigma_a L_e dt, with the medium's emission L_e [W/(m^2 sr)];
                    False: int T q dt, where the medium's emission is q, per volume [W/(m^3 sr)]: without extinction it
                    grows with the length of the ray, and is inf on an infinite one
+    rigorous       prove the result by ball arithmetic (any medium but a `Procedural` one; slow)
 
     Error: about 16 EPS relative in closed form (constant extinction: s q phi1(tau), phi1(x) = (1 - e^{-x})/x; cells
     composited); by quadrature, estimated, for the others.
     """
+    if rigorous:
+        return proven_radiance(medium, ray, times_sigma_a=times_sigma_a).reference()
     if times_sigma_a:
         return ambient_fog(medium, ray)
     if isinstance(medium, Medium | AnisotropicMedium):

@@ -13,14 +13,14 @@ import numpy as np
 
 from fogproof.analytic.airlight_asinh import Gain
 from fogproof.analytic.error_free import EPS
-from fogproof.analytic.ray_and_light import Placement
+from fogproof.analytic.ray_and_light import Placement, foot
 from fogproof.scene.lights import SpotLight
 
 
 def axis_products(where: Placement, light: SpotLight) -> tuple[np.ndarray, np.ndarray]:
     """Return A [m] and B, (n,) both."""
     axis = np.array(light.direction)[:, None]
-    return np.sum(axis * where.foot, axis=0), np.sum(axis * where.direction, axis=0)
+    return np.sum(axis * foot(where), axis=0), np.sum(axis * where.direction, axis=0)
 
 
 def margin(where: Placement) -> np.ndarray:
@@ -56,7 +56,10 @@ def lit_by_cone(where: Placement, light: SpotLight, ray: np.ndarray, t: np.ndarr
     if light.half_angle == math.pi:
         return np.ones(t.shape)
     A, B = axis_products(where, light)
-    cosine, delta = (A[ray] + B[ray] * t) / np.hypot(t, where.h[ray]), margin(where)[ray]
+    r = np.hypot(t, where.h[ray])
+    # A ray through the light itself has no edges; the angle is uncertain close to the light only.
+    cosine = (A[ray] + B[ray] * t) / r
+    delta = np.where(where.h[ray] > 0, margin(where)[ray], 16 * EPS + 2 * where.uncertainty[ray] / r)
     outer, inner = _cosines(light)
     if inner > outer:
         return (cosine >= outer - delta).astype(float)
@@ -73,9 +76,9 @@ def falloff(where: Placement, light: SpotLight, ray: np.ndarray) -> tuple[Gain |
         return None, np.zeros(len(where.h))
     A, B = axis_products(where, light)
 
-    def factor(w: np.ndarray, wt: np.ndarray, segment: np.ndarray) -> np.ndarray:
+    def factor(w: np.ndarray, wt: np.ndarray, scale: np.ndarray, segment: np.ndarray) -> np.ndarray:
         i = ray[segment]
-        cosine = (2 * A[i] + B[i] * (w - wt)) / (w + wt)
+        cosine = (2 * A[i] * scale + B[i] * (w - wt)) / (w + wt)
         return intensity(light, cosine)
 
     steepness = light.exponent + (1.5 / (inner - outer) if inner > outer else 0.0)
@@ -93,13 +96,15 @@ def intensity(light: SpotLight, cosine: np.ndarray) -> np.ndarray:
     return value
 
 
+def intensity_at(where: Placement, light: SpotLight, ray: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the intensity relative to the axis, and its error, at lit places t (p, nodes) of rays (p,)."""
+    A, B = axis_products(where, light)
+    cosine, delta = (A[ray, None] + B[ray, None] * t) / np.hypot(t, where.h[ray, None]), margin(where)[ray, None]
+    below, above = intensity(light, cosine - delta), intensity(light, cosine + delta)
+    return intensity(light, cosine), above - below
+
+
 def _cosines(light: SpotLight) -> tuple[float, float]:
     """Return the cosines of the edge of the cone and of its full part; equal for a hard edge."""
     start = light.half_angle if light.falloff_start is None else light.falloff_start
     return math.cos(light.half_angle), math.cos(start)
-
-
-def intensity_at(where: Placement, light: SpotLight, ray: np.ndarray, t: np.ndarray) -> np.ndarray:
-    """Return the intensity relative to the axis inside the cone, at places t (p, nodes) of rays (p,)."""
-    A, B = axis_products(where, light)
-    return intensity(light, (A[ray, None] + B[ray, None] * t) / np.hypot(t, where.h[ray, None]))

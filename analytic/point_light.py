@@ -18,11 +18,13 @@ from fogproof.analytic.airlight_phase import airlight_phase
 from fogproof.analytic.airlight_segments import Segments, cut
 from fogproof.analytic.convex_shapes import Chord, chord
 from fogproof.analytic.error_free import EPS, TINY, two_sum
+from fogproof.analytic.flat_rays import FlatRays
 from fogproof.analytic.light_cone import edges, falloff, lit_by_cone
 from fogproof.analytic.ray_and_light import Placement, moved, place
 from fogproof.analytic.shadows import Shadow, shadow_of_point
+from fogproof.analytic.vectors import norm
 from fogproof.errors import UnsupportedError
-from fogproof.scene import Isotropic, Medium, Ray
+from fogproof.scene import Isotropic, Medium
 from fogproof.scene.lights import PointLight, SpotLight
 from fogproof.scene.occluders import Occluder
 from fogproof.scene.shapes import Shape
@@ -31,7 +33,12 @@ Result = tuple[np.ndarray, np.ndarray, str, str]
 
 
 def point_light(
-    medium: Medium, ray: Ray, light: PointLight | SpotLight, shape: Shape, occluders: Sequence[Occluder], method: Method
+    medium: Medium,
+    ray: FlatRays,
+    light: PointLight | SpotLight,
+    shape: Shape,
+    occluders: Sequence[Occluder],
+    method: Method,
 ) -> Result:
     """Return the radiance (n, channels) along the flattened rays, its error, method and source."""
     where = place(ray, light.position)
@@ -40,12 +47,15 @@ def point_light(
         inside = chord(shape, ray)
         segments, owner, weight = _lit(where, inside, light, _shadows(occluders, ray, light))
         pieces = _with_channels(segments, sigma, sigma_low)
-        channel = np.tile(np.arange(len(sigma)), len(owner))
-        slot = np.repeat(owner, len(sigma)) * len(sigma) + channel
+        share = np.repeat(weight, len(sigma))
 
         def gather(x: np.ndarray) -> np.ndarray:
-            parts = x * np.repeat(weight, len(sigma))
-            return np.bincount(slot, parts, len(where.h) * len(sigma)).reshape(-1, len(sigma))
+            """Sum over the pieces of each ray."""
+            if segments.h is where.h:  # nothing is cut
+                return x.reshape(-1, len(sigma))
+            total = np.zeros((len(where.h), len(sigma)))
+            np.add.at(total, owner, (x * share).reshape(-1, len(sigma)))
+            return total
 
         phase = airlight_phase(medium.phase)
         gain, gain_error = (None, np.zeros(len(where.h)))
@@ -58,7 +68,7 @@ def point_light(
             name, source = airlight_asinh.METHOD, airlight_asinh.SOURCE
         else:
             raise UnsupportedError(f"method {method!r} knows no spot light with a fall-off; use 'asinh'", "method")
-        maybe = value * np.repeat(1 - weight, len(sigma)) / np.repeat(weight, len(sigma))  # what the other half may be
+        maybe = value * (1 - share) / share  # what the other half may be
         integral, error = gather(value), gather(error + maybe) + len(occluders) * EPS * gather(value)
         refuse_beyond(method, integral, error)
 
@@ -75,7 +85,7 @@ def point_light(
     return value, error, name, source
 
 
-def _shadows(occluders: Sequence[Occluder], ray: Ray, light: PointLight | SpotLight) -> list[Shadow]:
+def _shadows(occluders: Sequence[Occluder], ray: FlatRays, light: PointLight | SpotLight) -> list[Shadow]:
     return [shadow_of_point(occluder, ray, light.position) for occluder in occluders]
 
 
@@ -90,7 +100,11 @@ def _lit(
     start, end = where.a + (where.a_low + inside.start), where.a + (where.a_low + inside.end)
     start, end = np.where(inside.start == 0, where.a, start), np.where(inside.end == where.length, where.b, end)
     camera_low = np.where(inside.start == 0, where.a_low, 0.0)
-    whole = Segments(none, none, where.h, where.h_low, start, camera_low, start, end, inside.end - inside.start)
+    near, near_low = where.near, where.near_low
+    if inside.start.any():
+        near, near_low = norm((start, where.h), (camera_low, where.h_low))
+    length = inside.end - inside.start
+    whole = Segments(none, none, where.h, where.h_low, start, camera_low, start, end, length, near, near_low)
     unsure = (inside.sure_start > inside.start) | (inside.sure_end < inside.end)
     spot = isinstance(light, SpotLight)
     if not (shadows or spot or unsure.any()):
@@ -125,6 +139,8 @@ def _middle(pieces: Segments) -> np.ndarray:
 
 def _with_channels(segments: Segments, sigma: np.ndarray, sigma_low: np.ndarray) -> Segments:
     """Return each segment once a channel, with that channel's extinction."""
+    if len(sigma) == 1:
+        return segments._replace(sigma=segments.sigma + sigma, sigma_low=segments.sigma_low + sigma_low)
     count = len(segments.h)
     repeated = Segments(*(np.repeat(x, len(sigma)) for x in segments))
     return repeated._replace(sigma=np.tile(sigma, count), sigma_low=np.tile(sigma_low, count))

@@ -7,8 +7,21 @@ from typing import NamedTuple
 import numpy as np
 
 from fogproof.analytic.airlight_phase import AirlightPhase
-from fogproof.analytic.error_free import EPS, two_sum
-from fogproof.analytic.vectors import cross, dot, norm, product
+from fogproof.analytic.error_free import EPS
+from fogproof.analytic.flat_rays import FlatRays
+from fogproof.analytic.vectors import (
+    Pair,
+    Split,
+    cross,
+    dot,
+    hypot,
+    norm,
+    product_pair,
+    root_pair,
+    split,
+    square,
+    sum_pair,
+)
 from fogproof.scene import Ray
 
 
@@ -16,8 +29,9 @@ class Placement(NamedTuple):
     """Rays seen from a light, each (n,) unless said otherwise; lengths in metres, `x_low` is what x lacks.
 
     h, a, b      as in the airlight integral, length = b - a
-    foot         (3, n) from the light to the nearest point of each line
-    direction    (3, n) of the rays
+    near         distance of the light from the camera
+    q            (3, n) from the camera to the light
+    direction    (3, n) of the rays, of length 1 + excess
     uncertainty  how far half a unit in the last place of the coordinates moves light and ray apart
     """
 
@@ -27,38 +41,72 @@ class Placement(NamedTuple):
     a_low: np.ndarray
     b: np.ndarray
     length: np.ndarray
-    foot: np.ndarray
+    near: np.ndarray
+    near_low: np.ndarray
+    q: np.ndarray
+    q_low: np.ndarray
     direction: np.ndarray
+    excess: np.ndarray
     uncertainty: np.ndarray
 
     @property
     def nearest(self) -> np.ndarray:
         """Distance of the light from each segment."""
-        t = np.clip(0.0, self.a, self.b)
-        return np.hypot(t, self.h)
+        return hypot(np.maximum(np.maximum(self.a, -self.b), 0.0), self.h)
 
 
-def place(ray: Ray, position: tuple[float, float, float]) -> Placement:
-    """Return the rays in the coordinates of a light at `position`, in about twice the precision of float64.
+def place(ray: Ray | FlatRays, position: tuple[float, float, float]) -> Placement:
+    """Return the (flattened) rays in the coordinates of a light at `position`, in about twice the precision of float64.
 
     The direction counts as d/|d|: h = |q x d| / |d| and a = -q.d / |d|, where q leads from the origin to the light.
     """
     light = np.array(position)[:, None]
-    origin, d = ray.origin.reshape(-1, 3).T, ray.direction.reshape(-1, 3).T
+    origin, direction = (np.ascontiguousarray(x.reshape(-1, 3).T) for x in (ray.origin, ray.direction))
     length = ray.length.ravel()
-    q, q_low = two_sum(light, -origin)
-    square, square_low = dot(d, np.zeros_like(d), d)
-    excess = 0.5 * ((square - 1) + square_low)  # |d| - 1, for a direction that is off by rounding only
-    h, h_low = norm(*cross(q, q_low, d))
-    h, h_low = two_sum(h, h_low - h * excess)
-    along, along_low = dot(q, q_low, d)
-    a, a_low = two_sum(-along, along * excess - along_low)
-    b, b_low = two_sum(a, length)
-    b = b + np.where(np.isfinite(length), b_low + a_low, 0.0)
-    ahead, ahead_low = product(along, d)
-    foot = (ahead - q) + (ahead_low + along_low * d - 2 * excess * ahead - q_low)
-    uncertainty = EPS * sum(np.sqrt(np.sum(x * x, axis=0)) for x in (origin, light, q, q))
-    return Placement(h, h_low, a, a_low, b, length, foot, d, uncertainty)
+    q, q_low = sum_pair(light, -origin)
+    halves, d = split(q), split(direction)
+    excess = 0.5 * (
+        (one := dot(d, np.zeros_like(direction), d))[0] - 1 + one[1]
+    )  # |d| - 1 of a direction off by rounding
+    along, along_low = dot(halves, q_low, d)
+    a, a_low = sum_pair(-along, along * excess - along_low)
+    near2, near2_low = square(halves, q_low)
+    near, near_low = root_pair(near2, near2_low)
+    h, h_low = _across(near2, near2_low, a, a_low)
+    close = np.flatnonzero(h < 1e-5 * near)  # the difference of squares loses too much: by the cross product
+    if len(close):
+        some, some_d = ([Split(*(part[close] for part in x)) for x in v] for v in (halves, d))
+        h[close], h_low[close] = norm(*cross(some, q_low[:, close], some_d))
+        h[close], h_low[close] = sum_pair(h[close], h_low[close] - h[close] * excess[close])
+    endless = np.isinf(length)
+    b, b_low = sum_pair(a, np.where(endless, 0.0, length))
+    b = np.where(endless, np.inf, b + (b_low + a_low))
+    size = np.abs(origin).sum(axis=0) + np.abs(light).sum() + 2 * np.abs(q).sum(axis=0)
+    return Placement(h, h_low, a, a_low, b, length, near, near_low, q, q_low, direction, excess, EPS * size)
+
+
+def _across(near2: np.ndarray, near2_low: np.ndarray, a: np.ndarray, a_low: np.ndarray) -> Pair:
+    """Return the pair of sqrt(near^2 - a^2)."""
+    (halves,) = split([a])
+    a2, a2_low = product_pair(halves, halves)
+    h2, rest = sum_pair(near2, -a2)
+    h2, rest = sum_pair(h2, rest + (near2_low - (a2_low + 2 * a * a_low)))
+    return root_pair(np.maximum(h2, 0.0), np.where(h2 > 0, rest, 0.0))
+
+
+def foot(where: Placement) -> np.ndarray:
+    """Return the vectors (3, n) from the light to the nearest point of each line."""
+    (ahead,) = split([-where.a])
+    result = np.empty_like(where.q)
+    for i, di in enumerate(split(where.direction)):
+        part, rest = product_pair(ahead, di)
+        result[i] = (part - where.q[i]) + (rest - where.a_low * di.value - where.excess * part - where.q_low[i])
+    return result
+
+
+def meets_light(where: Placement) -> np.ndarray:
+    """Return which rays go through the light itself."""
+    return (where.h == 0) & (where.a <= 0) & (where.b >= 0)
 
 
 def moved(where: Placement, sigma: np.ndarray, phase: AirlightPhase) -> tuple[np.ndarray, np.ndarray]:
@@ -70,8 +118,8 @@ def moved(where: Placement, sigma: np.ndarray, phase: AirlightPhase) -> tuple[np
     h, a, b, nearest = where.h, where.a, where.b, where.nearest
     with np.errstate(all="ignore"):
         turn = where.uncertainty / nearest
-        low = np.where(b < np.inf, -b / np.hypot(b, h), -1.0)
-        bend, steep = (x * turn for x in phase.slope(low, -a / np.hypot(a, h)))
+        low = np.where(b < np.inf, -b / hypot(b, h), -1.0)
+        bend, steep = (x * turn for x in phase.slope(low, -a / hypot(a, h)))
         angular = 4 * EPS - 2 * np.log1p(-turn) + bend / (1 - bend)
         relative = np.expm1(2 * sigma * where.uncertainty[:, None] + angular[:, None])
     known = ((turn < 1) & (bend < 1))[:, None]

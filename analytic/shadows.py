@@ -13,8 +13,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fogproof.analytic.error_free import EPS
+from fogproof.analytic.flat_rays import FlatRays
 from fogproof.scene.occluders import Occluder, Sphere
-from fogproof.scene.rays import Ray
 
 Interval = tuple[np.ndarray, np.ndarray]
 
@@ -28,18 +28,18 @@ class Shadow(NamedTuple):
     end: np.ndarray
 
 
-def shadow_of_point(occluder: Occluder, ray: Ray, light: tuple[float, float, float]) -> Shadow:
+def shadow_of_point(occluder: Occluder, ray: FlatRays, light: tuple[float, float, float]) -> Shadow:
     """Return the shadow that the occluder casts on each (flattened) ray in the light of a point."""
-    origin, d = ray.origin.reshape(-1, 3), ray.direction.reshape(-1, 3)
+    origin, d = ray.origin, ray.direction
     p = np.array(light)
     return _with_margin(
         occluder, np.abs(origin).max(axis=1) + np.abs(p).max(), lambda o, m: _from_point(o, origin, d, p, m)
     )
 
 
-def shadow_of_direction(occluder: Occluder, ray: Ray, travel: tuple[float, float, float]) -> Shadow:
+def shadow_of_direction(occluder: Occluder, ray: FlatRays, travel: tuple[float, float, float]) -> Shadow:
     """Return the shadow that the occluder casts on each (flattened) ray in parallel light."""
-    origin, d = ray.origin.reshape(-1, 3), ray.direction.reshape(-1, 3)
+    origin, d = ray.origin, ray.direction
     v = np.array(travel)
     return _with_margin(occluder, np.abs(origin).max(axis=1), lambda o, m: _from_direction(o, origin, d, v, m))
 
@@ -84,8 +84,10 @@ def _from_point(
             R2 * N1 * N1 - _dot(V1, V1), R2 * N0 * N1 - _dot(V0, V1), R2 * N0 * N0 - _dot(V0, V0), N1 * side, N0 * side
         )
         low, high = _beyond(low, high, N0 * side - abs(to_plane) + margin, N1 * side)
-        if to_plane == 0:
-            low, high = np.full_like(low, np.nan), np.full_like(high, np.nan)
+        # A light in the disk itself may shine to either side, or to none; one beside it in its plane casts no shadow.
+        inside, beside = abs(to_plane) <= margin, np.sqrt(max(c @ c - to_plane * to_plane, 0.0))
+        low = np.where(inside, np.where(beside <= R, -np.inf, np.nan), np.where(to_plane == 0, np.nan, low))
+        high = np.where(inside, np.where(beside <= R, np.inf, np.nan), np.where(to_plane == 0, np.nan, high))
     none = ~((low < high) & (R > 0))
     return np.where(none, np.nan, low + ahead), np.where(none, np.nan, high + ahead)
 

@@ -10,6 +10,7 @@ from fogproof.analytic.airlight import Method
 from fogproof.analytic.convex_shapes import contains
 from fogproof.analytic.directional_light import directional_light
 from fogproof.analytic.environment_light import environment_light
+from fogproof.analytic.flat_rays import FlatRays, blocks_of
 from fogproof.analytic.point_light import point_light
 from fogproof.analytic.single_scattering_by_quadrature import single_scattering_by_quadrature
 from fogproof.contracts import Reference
@@ -62,15 +63,24 @@ def single_scattering(
         raise UnsupportedError(f"a {type(medium).__name__} has bounds of its own: leave the shape away", "shape")
     medium_channels = (0.0,) * medium.channels if medium.channels else 0.0
     channels = channel_count(medium=medium_channels, light=strength(light))
-    match light:
-        case Environment():
-            value, error, name, source = environment_light(medium, ray, light, shape, occluders)
-        case DirectionalLight() if isinstance(medium, Medium):
-            value, error, name, source = directional_light(medium, ray, light, shape, occluders)
-        case PointLight() | SpotLight() if isinstance(medium, Medium) and contains(shape, np.array(light.position)):
-            value, error, name, source = point_light(medium, ray, light, shape, occluders, method)
-        case _:
-            value, error, name, source = single_scattering_by_quadrature(medium, ray, light, shape, occluders)
+    parts = [_along(medium, block, light, shape, occluders, method) for block in blocks_of(ray)]
+    value, error = (np.concatenate(columns) for columns in list(zip(*parts, strict=True))[:2])
     result = ray.shape if channels is None else (*ray.shape, channels)
     value, error = (np.broadcast_to(x, (*x.shape[:-1], channels or 1)).reshape(result) for x in (value, error))
-    return Reference(value, error, name, source)
+    return Reference(value, error, *parts[0][2:])
+
+
+def _along(
+    medium: AnyMedium, ray: FlatRays, light: Light, shape: Shape, occluders: Sequence[Occluder], method: Method
+) -> tuple[np.ndarray, np.ndarray, str, str]:
+    """Return radiance and error (n, channels) of rays of shape (n,), method and source, by what serves them."""
+    match light:
+        case Environment():
+            return environment_light(medium, ray, light, shape, occluders)
+        case DirectionalLight() if isinstance(medium, Medium):
+            return directional_light(medium, ray, light, shape, occluders)
+        case PointLight() | SpotLight() if isinstance(medium, Medium) and contains(shape, np.array(light.position)):
+            return point_light(medium, ray, light, shape, occluders, method)
+        case DirectionalLight() | PointLight() | SpotLight():
+            return single_scattering_by_quadrature(medium, ray, light, shape, occluders)
+    raise InvalidValueError("light", "must be a light", light)

@@ -20,10 +20,11 @@ from fogproof.analytic.breakpoints import breakpoints
 from fogproof.analytic.coefficients import coefficients
 from fogproof.analytic.convex_shapes import chord, contains, through
 from fogproof.analytic.error_free import EPS, TINY
+from fogproof.analytic.flat_rays import FlatRays
 from fogproof.analytic.light_cone import edges, intensity_at, lit_by_cone
 from fogproof.analytic.panel_rule import NODES, WEIGHTS
 from fogproof.analytic.phase_functions import phase_pdf
-from fogproof.analytic.ray_and_light import Placement, place
+from fogproof.analytic.ray_and_light import Placement, meets_light, place
 from fogproof.analytic.shadows import shadow_of_direction, shadow_of_point
 from fogproof.analytic.transmittance import thickness
 from fogproof.analytic.varying_phase import share_at
@@ -81,32 +82,31 @@ Look = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
 def single_scattering_by_quadrature(
-    medium: AnyMedium, ray: Ray, light: Aimed, shape: Shape, occluders: Sequence[Occluder]
+    medium: AnyMedium, ray: FlatRays, light: Aimed, shape: Shape, occluders: Sequence[Occluder]
 ) -> tuple[np.ndarray, np.ndarray, str, str]:
     """Return the radiance (n, channels) along the flattened rays, its estimated error, method and source."""
-    ray = Ray(ray.origin.reshape(-1, 3), ray.direction.reshape(-1, 3), ray.length.ravel())
     where = None if isinstance(light, DirectionalLight) else place(ray, light.position)
     with np.errstate(all="ignore"):
         pieces = _pieces(medium, ray, light, shape, occluders, where)
         look = _integrand(medium, ray, light, shape, where, pieces)
-        value, error = _integrate(pieces, look, ray.length.size)
+        value, error = _integrate(pieces, look, len(ray.length))
         scale = np.atleast_1d(strength(light))
         error = np.where(scale > 0, scale * error + 4 * EPS * scale * value + TINY, 0.0)
         value = np.where(scale > 0, scale * value, 0.0)
         if where is not None and not isinstance(light, DirectionalLight):
-            on_light = (where.h == 0) & (where.a <= 0) & (where.b >= 0)
+            on_light = meets_light(where)
             value[on_light], error[on_light] = _at_the_light(medium, ray, light, shape, occluders, on_light)
     return value, error, METHOD, SOURCE
 
 
 def _pieces(
-    medium: AnyMedium, ray: Ray, light: Aimed, shape: Shape, occluders: Sequence[Occluder], where: Placement | None
+    medium: AnyMedium, ray: FlatRays, light: Aimed, shape: Shape, occluders: Sequence[Occluder], where: Placement | None
 ) -> Pieces:
     if isinstance(medium, Medium):
         inside = chord(shape, ray)
         breaks = np.stack([inside.start, inside.end], axis=1)
     else:
-        breaks = breakpoints(medium, ray)
+        breaks = breakpoints(medium, Ray(*ray))
     if np.isinf(breaks).any():
         raise UnsupportedError("an endless ray through a medium without end: give the ray a length", "ray")
     start, end = breaks[:, :1], breaks[:, -1:]
@@ -137,6 +137,8 @@ def _pieces(
         weight = np.where((middle > outer) & (middle < over), np.minimum(weight, 0.5), weight)
         weight = np.where((middle > dark) & (middle < undark), 0.0, weight)
     lit = weight > 0
+    if where is not None:
+        lit &= ~meets_light(where)[owner]
     owner, low, high, weight = owner[lit], low[lit], high[lit], weight[lit]
     span = high - low
     if where is not None:
@@ -157,7 +159,7 @@ def _from_light(t: np.ndarray, h: np.ndarray) -> tuple[np.ndarray, np.ndarray, n
 
 
 def _integrand(
-    medium: AnyMedium, ray: Ray, light: Aimed, shape: Shape, where: Placement | None, pieces: Pieces
+    medium: AnyMedium, ray: FlatRays, light: Aimed, shape: Shape, where: Placement | None, pieces: Pieces
 ) -> Look:
     """Return the integrand of each piece in its variable, for a light of unit strength."""
     own = pieces.ray
@@ -191,6 +193,7 @@ def _integrand(
 
     def look(which: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         i = own[which]
+        uncertain = np.zeros((1, 1))  # of the intensity, where that varies with the angle
         d = ray.direction[i][:, None, :]
         if where is None or isinstance(light, DirectionalLight):
             distance, jacobian = pieces.start[which, None] + u, np.ones(u.shape)
@@ -205,7 +208,9 @@ def _integrand(
             x = ray.origin[i][:, None, :] + distance[..., None] * d
             jacobian, mu = 1 / r, (wt - w) / (w + wt)
             if isinstance(light, SpotLight):
-                jacobian = jacobian * intensity_at(where, light, i, t)
+                aim, blur = intensity_at(where, light, i, t)
+                uncertain = (jacobian * blur).reshape(-1, 1)
+                jacobian = jacobian * aim
             back = np.array(light.position) - x
             length = np.linalg.norm(back, axis=-1)
             back, way = back / length[..., None], length
@@ -217,6 +222,7 @@ def _integrand(
         source, source_error = scattering(flat, ahead, mu)
         arrives = np.exp(-near - far) * jacobian.reshape(-1, 1)
         value, error = source * arrives, source_error * arrives
+        error = error + source * np.exp(-near - far) * uncertain
         error = error + value * np.expm1(near_error + far_error + 32 * EPS)
         return value.reshape(*u.shape, channels), error.reshape(*u.shape, channels)
 
@@ -268,7 +274,7 @@ def _integrate(pieces: Pieces, look: Look, count: int) -> tuple[np.ndarray, np.n
 
 def _at_the_light(
     medium: AnyMedium,
-    ray: Ray,
+    ray: FlatRays,
     light: PointLight | SpotLight,
     shape: Shape,
     occluders: Sequence[Occluder],

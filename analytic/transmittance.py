@@ -12,6 +12,7 @@ from fogproof.analytic.exponential_medium import exponential_thickness
 from fogproof.analytic.linear_medium import linear_thickness
 from fogproof.analytic.opengl_fog import fog_thickness
 from fogproof.analytic.plane_crossings import cell_thickness
+from fogproof.analytic.rigorous import proven_thickness, proven_transmittance
 from fogproof.analytic.thickness import Rays, Thickness, channels_of, rays_with_channels
 from fogproof.contracts import Reference
 from fogproof.scene import (
@@ -28,25 +29,33 @@ from fogproof.scene import (
 SOURCE = "Bouguer 1729, Beer 1852; Chandrasekhar 1960, Radiative Transfer, section 7"
 
 
-def optical_thickness(medium: AnyMedium, ray: Ray) -> Reference:
+def optical_thickness(medium: AnyMedium, ray: Ray, *, rigorous: bool = False) -> Reference:
     """Return tau = integral of sigma_t along the ray, dimensionless, shape R or R + (channels,).
+
+    rigorous  prove the result by ball arithmetic (any medium but a `Procedural` one; slow)
 
     Positions are origin + t direction, with the direction as stored; in heterogeneous media components below 1e-100
     count as 0. An empty medium has tau = 0 on every ray, the infinite one included.
     Error: 1 EPS relative for a homogeneous medium; see the method named in the result for the others.
     """
+    if rigorous:
+        return proven_thickness(medium, ray).reference()
     tau = thickness(medium, ray, channels_of(medium))
     with np.errstate(under="ignore", invalid="ignore"):
         value = tau.value + tau.low
         return Reference(value, tau.error + np.where(np.isinf(value), 0.0, EPS * value + TINY), tau.method, tau.source)
 
 
-def transmittance(medium: AnyMedium, ray: Ray) -> Reference:
+def transmittance(medium: AnyMedium, ray: Ray, *, rigorous: bool = False) -> Reference:
     """Return T = exp(-tau), dimensionless, shape R or R + (channels,).
+
+    rigorous  prove the result by ball arithmetic (any medium but a `Procedural` one; slow)
 
     Error: at most 6 EPS relative for every tau where tau is known as a pair (homogeneous, linear, layers, nearest
     voxels), because it is never rounded; else the error of tau more. Where T underflows it is absolute, 2 TINY.
     """
+    if rigorous:
+        return proven_transmittance(medium, ray).reference()
     tau = thickness(medium, ray, channels_of(medium))
     value, rounding, inherited = survival(tau)
     return Reference(value, rounding + inherited, f"exp(-tau), {tau.method}", tau.source)

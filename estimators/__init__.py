@@ -1,25 +1,73 @@
 """Samplers, pure functions of uniforms, and Monte Carlo estimators of the rendering equation. Nothing shared with the oracle."""
 
+from fogproof.estimators.compiled import CompiledField
+from fogproof.estimators.decoupled_airlight import CachedTransmittance, DecoupledAirlight
+from fogproof.estimators.delta_tracking import DeltaFreePath, DeltaTransmittance, delta_tracking
+from fogproof.estimators.directions import Cosines, Directions
+from fogproof.estimators.environment_airlight import EnvironmentAirlight
 from fogproof.estimators.equiangular import Equiangular
-from fogproof.estimators.fog import AnalogFog
-from fogproof.estimators.free_path import HomogeneousFreePath
-from fogproof.estimators.henyey_greenstein import HenyeyGreensteinDirections
-from fogproof.estimators.isotropic import IsotropicDirections
-from fogproof.estimators.phase import direction_sampler, phase_value
-from fogproof.estimators.rayleigh import RayleighDirections
-from fogproof.estimators.single_scattering import EquiangularAirlight, FreePathAirlight
-from fogproof.estimators.transmittance import AnalogTransmittance
+from fogproof.estimators.extinction import Constant, Exponential, Linear, Vanishing, along
+from fogproof.estimators.fog import AnalogFog, CertainCollisionFog, HomogeneousSpectralFog, UniformEmission
+from fogproof.estimators.free_path import FreePath, HomogeneousSpectralFreePath, TruncatedFreePath
+from fogproof.estimators.lit_medium import LitMedium
+from fogproof.estimators.majorant_grid import MajorantGrid
+from fogproof.estimators.marched_airlight import MarchedAirlight
+from fogproof.estimators.noise import FractalNoise
+from fogproof.estimators.phase import phase_table, phase_value
+from fogproof.estimators.placing import placer
+from fogproof.estimators.ratio_tracking import RatioTransmittance, ResidualRatioTransmittance, ratio_tracking
+from fogproof.estimators.ray_marching import MarchedFreePath, MarchedTransmittance, RayMarch, feature_size
+from fogproof.estimators.regular_tracking import RegularFreePath, RegularTransmittance, regular_tracking
+from fogproof.estimators.shadow_rays import shadow_transmittance
+from fogproof.estimators.single_scattering import Airlight
+from fogproof.estimators.spectral_tracking import SpectralFog, SpectralFreePath, spectral_tracking
+from fogproof.estimators.transmittance import AnalogTransmittance, SpectralTransmittance
 
 __all__ = [
+    "Airlight",
     "AnalogFog",
     "AnalogTransmittance",
+    "CachedTransmittance",
+    "CertainCollisionFog",
+    "CompiledField",
+    "Constant",
+    "Cosines",
+    "DecoupledAirlight",
+    "DeltaFreePath",
+    "DeltaTransmittance",
+    "Directions",
+    "EnvironmentAirlight",
     "Equiangular",
-    "EquiangularAirlight",
-    "FreePathAirlight",
-    "HenyeyGreensteinDirections",
-    "HomogeneousFreePath",
-    "IsotropicDirections",
-    "RayleighDirections",
-    "direction_sampler",
+    "Exponential",
+    "FractalNoise",
+    "FreePath",
+    "HomogeneousSpectralFog",
+    "HomogeneousSpectralFreePath",
+    "Linear",
+    "LitMedium",
+    "MajorantGrid",
+    "MarchedAirlight",
+    "MarchedFreePath",
+    "MarchedTransmittance",
+    "RatioTransmittance",
+    "RayMarch",
+    "RegularFreePath",
+    "RegularTransmittance",
+    "ResidualRatioTransmittance",
+    "SpectralFog",
+    "SpectralFreePath",
+    "SpectralTransmittance",
+    "TruncatedFreePath",
+    "UniformEmission",
+    "Vanishing",
+    "along",
+    "delta_tracking",
+    "feature_size",
+    "phase_table",
     "phase_value",
+    "placer",
+    "ratio_tracking",
+    "regular_tracking",
+    "shadow_transmittance",
+    "spectral_tracking",
 ]

@@ -53,7 +53,7 @@ class Equiangular:
         tangent = np.tan(u[:, 0] * self.angle)
         with np.errstate(divide="ignore"):
             t = self.h * (self.a + self.h * tangent) / (self.h - self.a * tangent)
-        t = np.clip(t, self.a, min(self.b, np.finfo(float).max))
+        t = np.clip(t, self.a, min(self.b, np.finfo(t.dtype).max))
         return Draw(t, self.pdf(t))
 
     def pdf(self, x: np.ndarray) -> np.ndarray:

@@ -1,8 +1,8 @@
-"""Free paths in a homogeneous medium, up to a surface: a density before it, a probability at it."""
+"""Free paths where the optical depth has a closed inverse: up to a surface, truncated to a segment, or of several channels."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
@@ -10,26 +10,28 @@ import numpy as np
 from fogproof.contracts import Draw
 from fogproof.domains import HalfLine, Interval
 from fogproof.errors import InvalidValueError
+from fogproof.estimators.blocks import blocks
+from fogproof.estimators.extinction import Constant, Extinction, as_extinction
 from fogproof.validate import number
 
 
 @dataclass(frozen=True)
-class HomogeneousFreePath:
+class FreePath:
     """Distance to the next event: a collision at t < `surface`, or the surface itself.
 
-    sigma_t  extinction coefficient [1/m]
-    surface  distance of the surface [m], inf if there is none
+    extinction  along the ray, see `extinction`; a number is a constant sigma_t [1/m]
+    surface     distance of the surface [m], inf if there is none
 
-    Collisions have the *density* sigma_t e^{-sigma_t t} [1/m]; the surface is reached with *probability* e^{-sigma_t surface}, an
-    atom. Event 0 is a collision, 1 the surface.
+    Collisions have the *density* sigma(t) e^{-depth(t)} [1/m]; the surface is reached with *probability* e^{-depth(surface)}, an
+    atom; at inf it is the probability of never colliding. Event 0 is a collision, 1 the surface.
     """
 
-    sigma_t: float
+    extinction: Extinction | float
     surface: float = np.inf
     dimensions: ClassVar[int] = 1
 
     def __post_init__(self) -> None:
-        number("sigma_t", self.sigma_t, "must be finite and >= 0 [1/m]", 0)
+        object.__setattr__(self, "extinction", as_extinction(self.extinction))
         if not self.surface > 0:
             raise InvalidValueError("surface", "must be > 0 [m]", self.surface, "inf means that there is none")
 
@@ -40,20 +42,130 @@ class HomogeneousFreePath:
 
     @property
     def atoms(self) -> dict[float, float]:
-        """The probability of reaching the surface (at inf: of never colliding, which only an empty medium allows)."""
-        if np.isinf(self.surface):
-            return {np.inf: 1.0} if self.sigma_t == 0 else {}
-        return {self.surface: float(np.exp(-self.sigma_t * self.surface))}
+        """The probability of reaching the surface; none if that is 0 at inf."""
+        depth = float(as_extinction(self.extinction).depth(np.array(float(self.surface))))
+        reached = float(np.exp(-depth))
+        return {} if np.isinf(self.surface) and reached == 0 else {self.surface: reached}
 
     def sample(self, u: np.ndarray) -> Draw:
         """Map uniforms (n, 1) to distances [m] and their density [1/m], or probability where the surface is reached."""
-        depth = -np.log1p(-u[:, 0])  # optical depth to the collision; finite for every u in [0, 1)
-        t = depth / self.sigma_t if self.sigma_t > 0 else np.full_like(depth, np.inf)
-        hit = t >= self.surface
-        x = np.where(hit, self.surface, t)
-        at_surface = self.atoms.get(self.surface, 0.0)
-        return Draw(x, np.where(hit, at_surface, self.sigma_t * (1 - u[:, 0])), event=hit.astype(np.int64))
+        extinction = as_extinction(self.extinction)
+        reached = self.atoms.get(self.surface, 0.0)
+        x, pdf = np.empty((2, len(u)), u.dtype)
+        for block in blocks(len(u)):
+            xi, t, p = u[block, 0], x[block], pdf[block]
+            depth = np.negative(xi)
+            np.log1p(depth, out=depth)  # finite for every u in [0, 1)
+            np.negative(depth, out=depth)
+            t[:] = extinction.reach(depth)
+            np.subtract(1, xi, out=p)
+            p *= extinction.sigma(t)
+            if reached > 0:
+                hit = t >= self.surface
+                np.copyto(p, reached, where=hit)
+                np.minimum(t, self.surface, out=t)
+        return Draw(x, pdf, event=(x >= self.surface).astype(np.int64))
 
     def pdf(self, x: np.ndarray) -> np.ndarray:
         """Return the density of collisions at distances x (n,) [1/m]."""
-        return self.sigma_t * np.exp(-self.sigma_t * x)
+        extinction = as_extinction(self.extinction)
+        return extinction.sigma(x) * np.exp(-extinction.depth(x))
+
+
+@dataclass(frozen=True)
+class TruncatedFreePath:
+    """Distance to a collision that is sure to happen before `length`: the density is divided by 1 - e^{-depth(length)}.
+
+    extinction  along the ray; a number is a constant sigma_t [1/m]
+    length      of the segment [m], finite
+    """
+
+    extinction: Extinction | float
+    length: float
+    dimensions: ClassVar[int] = 1
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "extinction", as_extinction(self.extinction))
+        number("length", self.length, "must be finite and > 0 [m]", 0, np.inf, open_ends=True)
+        if not self._collides > 0:
+            raise InvalidValueError("extinction", "must not vanish on the whole segment", self.extinction)
+
+    @property
+    def _collides(self) -> float:
+        """The probability of a collision on the segment."""
+        return -float(np.expm1(-as_extinction(self.extinction).depth(np.array(float(self.length)))))
+
+    @property
+    def domain(self) -> Interval:
+        """[0, length]."""
+        return Interval(0.0, self.length)
+
+    def sample(self, u: np.ndarray) -> Draw:
+        """Map uniforms (n, 1) to distances [m] and their density [1/m]."""
+        extinction, share = as_extinction(self.extinction), self._collides
+        x, pdf = np.empty((2, len(u)), u.dtype)
+        for block in blocks(len(u)):
+            lost = -share * u[block, 0]
+            x[block] = np.clip(extinction.reach(-np.log1p(lost)), 0, self.length)
+            pdf[block] = extinction.sigma(x[block]) * (1 + lost) / share
+        return Draw(x, pdf)
+
+    def pdf(self, x: np.ndarray) -> np.ndarray:
+        """Return the density at distances x (n,) [1/m]."""
+        extinction = as_extinction(self.extinction)
+        return extinction.sigma(x) * np.exp(-extinction.depth(x)) / self._collides
+
+
+@dataclass(frozen=True)
+class HomogeneousSpectralFreePath:
+    """Free paths that serve several channels: one channel is drawn, and the distance with its extinction.
+
+    sigma_t  extinction coefficient of each channel [1/m]
+    surface  distance of the surface [m], inf if there is none
+
+    The density is the *mean* of the channels' densities, and the probability of the surface the mean of theirs: whatever channel
+    was drawn, every channel divides by both (the balance heuristic of one sample, Veach & Guibas 1995). `weight` (n, channels)
+    is the transmittance of each channel over that, bounded by the number of channels over the smallest sigma_t.
+    """
+
+    sigma_t: tuple[float, ...]
+    surface: float = np.inf
+    dimensions: ClassVar[int] = 2
+    _paths: tuple[FreePath, ...] = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        if not self.sigma_t:
+            raise InvalidValueError("sigma_t", "must be a list with one number a channel [1/m]", self.sigma_t)
+        object.__setattr__(self, "_paths", tuple(FreePath(Constant(s), self.surface) for s in self.sigma_t))
+
+    @property
+    def domain(self) -> Interval | HalfLine:
+        """[0, surface], or the half line."""
+        return self._paths[0].domain
+
+    @property
+    def atoms(self) -> dict[float, float]:
+        """The probability of reaching the surface, the mean over the channels."""
+        reached = sum(path.atoms.get(self.surface, 0.0) for path in self._paths) / len(self._paths)
+        return {self.surface: reached} if reached > 0 or np.isfinite(self.surface) else {}
+
+    def sample(self, u: np.ndarray) -> Draw:
+        """Map uniforms (n, 2), the first for the channel, to distances [m], density or probability, and weights (n, channels)."""
+        sigma_t = np.array(self.sigma_t, u.dtype)
+        chosen = sigma_t[np.minimum(u[:, 0] * len(sigma_t), len(sigma_t) - 1).astype(np.intp)]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            t = np.where(chosen > 0, -np.log1p(-u[:, 1]) / chosen, np.inf).astype(u.dtype)
+        x = np.minimum(t, self.surface)
+        hit = x >= self.surface
+        pdf = np.where(hit, self.atoms.get(self.surface, 0.0), self.pdf(x))
+        return Draw(x, pdf, self.eval(x) / pdf[:, None], hit.astype(np.int64))
+
+    def pdf(self, x: np.ndarray) -> np.ndarray:
+        """Return the density of collisions at distances x (n,) [1/m]."""
+        return (self.eval(x) * np.array(self.sigma_t)).mean(axis=-1)
+
+    def eval(self, x: np.ndarray) -> np.ndarray:
+        """Return the transmittance of each channel to distances x: (n, channels)."""
+        finite = np.minimum(x, np.finfo(x.dtype).max)
+        with np.errstate(over="ignore"):
+            return np.exp(-np.multiply.outer(finite, np.array(self.sigma_t, x.dtype)))

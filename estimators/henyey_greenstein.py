@@ -1,55 +1,58 @@
-"""Henyey-Greenstein scattering (Henyey & Greenstein 1941), in a form that holds for every g in (-1, 1), 0 included."""
+"""Henyey-Greenstein scattering (Henyey & Greenstein 1941), in a form that holds for every g in (-1, 1), 0 included.
+
+The textbook inverse divides by 2 g and is singular at g = 0. With k = |g| and d = 1 - k + 2 k xi it is equivalent to
+1 - mu = 2 (1 - k)^2 (1 - xi)(1 + k xi)/d^2 and 1 + mu = 2 (1 + k)^2 xi (1 - k + k xi)/d^2, sums of positive terms only; and the
+density, a power of 1 + g^2 - 2 g mu = (1 - k^2)^2/d^2, is d^3/(4 pi (1 - k^2)^2). For g < 0 the same law is mirrored.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
-
 import numpy as np
 
-from fogproof.contracts import Draw
-from fogproof.domains import UnitSphere
-from fogproof.estimators.frames import Axis, directions
+from fogproof.estimators.polar import Polar
+from fogproof.scene import HenyeyGreenstein
 
 
-def density(g: float, mu: np.ndarray) -> np.ndarray:
-    """Return the phase function at forward cosines mu [1/sr]; g is their mean."""
-    return _density(g, 1 - mu if g >= 0 else 1 + mu)
-
-
-def _density(g: float, away: np.ndarray) -> np.ndarray:
-    """Return the density at `away` = 1 - mu for g >= 0, 1 + mu for g < 0: zero at the peak, where mu itself loses digits."""
-    k = abs(g)
-    d2 = (1 - k) ** 2 + 2 * k * away
+def density(phase: HenyeyGreenstein, versine: np.ndarray, coversine: np.ndarray) -> np.ndarray:
+    """Return the phase function [1/sr]; g is the mean of mu."""
+    k, from_peak = abs(phase.g), versine if phase.g >= 0 else coversine
+    d2 = (1 - k) ** 2 + 2 * k * from_peak
     return (1 - k) * (1 + k) / (4 * np.pi * d2 * np.sqrt(d2))
 
 
-@dataclass(frozen=True)
-class HenyeyGreensteinDirections:
-    """Directions about `axis`, the propagation direction before scattering.
+def cosines(phase: HenyeyGreenstein, xi: np.ndarray) -> np.ndarray:
+    """Return forward cosines, absolute error below 8 eps."""
+    k = abs(phase.g)
+    rest = 1 - xi
+    if phase.g < 0:
+        xi, rest = rest, xi
+    d = 2 * k * xi
+    d += 1 - k
+    from_peak = d + (1 + k)
+    from_peak *= rest
+    d *= d
+    from_peak /= d
+    from_peak *= (1 - k) ** 2
+    return np.subtract(1, from_peak, out=from_peak) if phase.g >= 0 else np.subtract(from_peak, 1, out=from_peak)
 
-    The textbook inverse divides by 2 g and is singular at g = 0. With k = |g| and D = 1 - k + 2 k xi it is equivalent to
-    1 - mu = 2 (1 - k)^2 (1 - xi) (1 + k xi) / D^2 and 1 + mu = 2 (1 + k)^2 xi (1 - k + k xi) / D^2, sums of positive terms only.
-    For g < 0 the same law is mirrored.
-    """
 
-    g: float
-    axis: Axis = (0.0, 0.0, 1.0)
-    domain: ClassVar[UnitSphere] = UnitSphere()
-    dimensions: ClassVar[int] = 2
-
-    def sample(self, u: np.ndarray) -> Draw:
-        """Map uniforms (n, 2) to directions (n, 3) and their pdf [1/sr]."""
-        k = abs(self.g)
-        xi = u[:, 0] if self.g >= 0 else 1 - u[:, 0]
-        d2 = ((1 - k) + 2 * k * xi) ** 2
-        from_peak = 2 * (1 - k) ** 2 * (1 - xi) * (1 + k * xi) / d2
-        from_antipode = 2 * (1 + k) ** 2 * xi * ((1 - k) + k * xi) / d2
-        versine, coversine = (from_peak, from_antipode) if self.g >= 0 else (from_antipode, from_peak)
-        return Draw(directions(self.axis, versine, coversine, u[:, 1]), _density(self.g, from_peak))
-
-    def pdf(self, x: np.ndarray) -> np.ndarray:
-        """Return the density of directions x (n, 3) [1/sr], from the chord to the peak: 2 (1 - mu) = |x - axis|^2."""
-        peak = np.copysign(1.0, self.g) * np.asarray(self.axis)
-        chord = x - peak
-        return _density(self.g, 0.5 * np.sum(chord * chord, axis=-1))
+def polar(phase: HenyeyGreenstein, xi: np.ndarray) -> Polar:
+    """Return scattering angles and their pdf."""
+    k = abs(phase.g)
+    rest = 1 - xi
+    if phase.g < 0:
+        xi, rest = rest, xi
+    d = 2 * k * xi
+    d += 1 - k
+    d2 = d * d
+    from_peak = d + (1 + k)
+    from_peak *= rest
+    from_peak /= d2
+    from_peak *= (1 - k) ** 2
+    from_antipode = d + (1 - k)
+    from_antipode *= xi
+    from_antipode /= d2
+    from_antipode *= (1 + k) ** 2
+    d2 *= d
+    d2 /= 4 * np.pi * ((1 - k) * (1 + k)) ** 2
+    return Polar(from_peak, from_antipode, d2) if phase.g >= 0 else Polar(from_antipode, from_peak, d2)

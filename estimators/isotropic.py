@@ -1,35 +1,23 @@
-"""Isotropic scattering: all directions alike."""
+"""Isotropic scattering: all directions alike (Archimedes: the cosine to any axis is uniform)."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
-
 import numpy as np
 
-from fogproof.contracts import Draw
-from fogproof.domains import UnitSphere
-from fogproof.estimators.frames import Axis, directions
+from fogproof.estimators.polar import Polar
+from fogproof.scene import Isotropic
 
 
-def density(mu: np.ndarray) -> np.ndarray:
-    """Return the phase function at forward cosines mu [1/sr]."""
-    return np.full_like(mu, 0.25 / np.pi)
+def density(phase: Isotropic, versine: np.ndarray, coversine: np.ndarray) -> np.ndarray:
+    """Return 1/(4 pi) [1/sr]."""
+    return np.full_like(versine, 0.25 / np.pi)
 
 
-@dataclass(frozen=True)
-class IsotropicDirections:
-    """Directions uniform on the sphere (Archimedes: the cosine to any axis is uniform)."""
+def cosines(phase: Isotropic, xi: np.ndarray) -> np.ndarray:
+    """Return forward cosines."""
+    return 2 * xi - 1
 
-    axis: Axis = (0.0, 0.0, 1.0)
-    domain: ClassVar[UnitSphere] = UnitSphere()
-    dimensions: ClassVar[int] = 2
 
-    def sample(self, u: np.ndarray) -> Draw:
-        """Map uniforms (n, 2) to directions (n, 3) and their pdf [1/sr]."""
-        x = directions(self.axis, 2 * (1 - u[:, 0]), 2 * u[:, 0], u[:, 1])
-        return Draw(x, self.pdf(x))
-
-    def pdf(self, x: np.ndarray) -> np.ndarray:
-        """Return the density of directions x (n, 3) [1/sr]."""
-        return np.full(len(x), 0.25 / np.pi)
+def polar(phase: Isotropic, xi: np.ndarray) -> Polar:
+    """Return scattering angles and their pdf."""
+    return Polar(2 * (1 - xi), 2 * xi, np.full_like(xi, 0.25 / np.pi))

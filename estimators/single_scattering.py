@@ -1,79 +1,72 @@
-"""Airlight of a point light in a homogeneous medium: one scattering event, placed by two different samplers."""
+"""Single scattering of a light with a direction: one scattering event on the camera ray, connected to the light."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
 from fogproof.contracts import Draws
 from fogproof.errors import UnsupportedError
-from fogproof.estimators.equiangular import Equiangular
-from fogproof.estimators.free_path import HomogeneousFreePath
-from fogproof.estimators.grey import grey
-from fogproof.estimators.phase import phase_value
-from fogproof.scene import Medium, PointLight, Ray
-
-
-@dataclass(frozen=True)
-class _Setting:
-    """A ray beside a light, in the coordinate t along the ray from the foot of the perpendicular."""
-
-    sigma_t: float
-    strength: float  # sigma_s times the light's intensity [W/(m sr)]
-    h: float
-    a: float
-    b: float
-
-    def radiance_density(self, medium: Medium, t: np.ndarray) -> np.ndarray:
-        """Return the airlight scattered at t, per unit length [W/(m^3 sr)]."""
-        r2 = self.h * self.h + t * t
-        r = np.sqrt(r2)
-        attenuation = np.exp(-self.sigma_t * ((t - self.a) + r))
-        return self.strength * phase_value(medium.phase, -t / r) * attenuation / r2
-
-
-def _setting(medium: Medium, ray: Ray, light: PointLight) -> _Setting:
-    if ray.shape:
-        raise UnsupportedError(f"an estimator looks along one ray, got a batch of shape {ray.shape}", "ray")
-    sigma_a, sigma_s = grey("sigma_a", medium.sigma_a), grey("sigma_s", medium.sigma_s)
-    to_light = np.asarray(light.position) - ray.origin
-    along = float(to_light @ ray.direction)
-    h = float(np.linalg.norm(to_light - along * ray.direction))
-    strength = sigma_s * grey("intensity", light.intensity)
-    return _Setting(sigma_a + sigma_s, strength, h, -along, float(ray.length) - along)
+from fogproof.estimators.blocks import blocks
+from fogproof.estimators.lit_medium import LitMedium
+from fogproof.estimators.placing import Placer, Placing, placer
+from fogproof.estimators.shadow_rays import ShadowRays
+from fogproof.scene import AnyMedium, Ray
+from fogproof.scene.lights import DirectionalLight, Light, PointLight, SpotLight
+from fogproof.scene.occluders import Occluder
+from fogproof.scene.shapes import Shape, Unbounded
 
 
 @dataclass(frozen=True, eq=False)
-class EquiangularAirlight:
-    """The scattering event is placed by equiangular sampling: no 1/r^2 is left in the estimate."""
+class Airlight:
+    """T(camera, x) sigma_s f_p E(x) T(x, light) / p(t) at one place t of the ray; E is the irradiance, 0 in the shadow.
 
-    medium: Medium
-    ray: Ray
-    light: PointLight
+    placing  how t is drawn. "equiangular" leaves no 1/r^2 in the estimate; with "free-path" and "distance" the variance near a
+             light is of order h^-3; "mixed" is bounded by the better of the two
 
-    def draw(self, rng: np.random.Generator, n: int) -> Draws:
-        """Return n realisations of the airlight [W/(m^2 sr)]."""
-        setting = _setting(self.medium, self.ray, self.light)
-        sampler = Equiangular(setting.h, setting.a, setting.b)
-        positions = sampler.sample(rng.random((n, 1)))
-        return Draws(setting.radiance_density(self.medium, positions.x) / positions.pdf, cost=np.ones(n))
-
-
-@dataclass(frozen=True, eq=False)
-class FreePathAirlight:
-    """The scattering event is placed by the free path: paths that reach the surface see no airlight.
-
-    Near the light the 1/r^2 that is left makes the variance large (of order h^-3).
+    The other arguments are those of `LitMedium`; the light is not an environment.
     """
 
-    medium: Medium
+    medium: AnyMedium
     ray: Ray
-    light: PointLight
+    light: Light
+    placing: Placing = "equiangular"
+    occluders: tuple[Occluder, ...] = ()
+    shape: Shape = field(default_factory=Unbounded)
+    shadow_rays: ShadowRays = "exact"
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.light, PointLight | SpotLight | DirectionalLight):
+            raise UnsupportedError("Airlight needs a light with a direction; see EnvironmentAirlight", "light")
+
+    @cached_property
+    def _lit(self) -> LitMedium:
+        return LitMedium(self.medium, self.ray, self.light, self.occluders, self.shape, self.shadow_rays)
+
+    @cached_property
+    def _placer(self) -> Placer:
+        return placer(self._lit, self.placing)
 
     def draw(self, rng: np.random.Generator, n: int) -> Draws:
-        """Return n realisations of the airlight [W/(m^2 sr)]."""
-        setting = _setting(self.medium, self.ray, self.light)
-        paths = HomogeneousFreePath(setting.sigma_t, float(self.ray.length)).sample(rng.random((n, 1)))
-        value = setting.radiance_density(self.medium, paths.x + setting.a) / paths.pdf
-        return Draws(np.where(paths.event == 1, 0.0, value), cost=np.ones(n))
+        """Return n realisations of the radiance [W/(m^2 sr)], at the cost of their look-ups."""
+        if self._lit.length == 0:
+            return Draws(np.zeros(n), np.zeros(n))
+        return one_sample(self._lit, self._placer, self._lit.seen, rng, n)
+
+
+def one_sample(
+    lit: LitMedium, places: Placer, seen: Callable[[np.ndarray], np.ndarray], rng: np.random.Generator, n: int
+) -> Draws:
+    """Return n one-sample estimates with places drawn by `places` and a given transmittance from the camera."""
+    value, cost = np.empty((2, n))
+    for block in blocks(n):
+        drawn = places.sample(rng.random((len(value[block]), 1)))
+        assert drawn.pdf is not None
+        inside = np.ones(len(drawn.x), bool) if drawn.event is None else drawn.event == 0
+        t = drawn.x if drawn.event is None else np.where(inside, drawn.x, 0.0)
+        scattered, cost[block] = lit.scattered(t, rng)
+        value[block] = np.where(inside, seen(t) * scattered / drawn.pdf, 0.0)  # a path that leaves the medium sees none
+    return Draws(value, cost)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fogproof.analytic import airlight_integral, ambient_fog, single_scattering, transmittance
-from fogproof.estimators import Equiangular, EquiangularAirlight, HomogeneousFreePath
+from fogproof.estimators import Airlight, Equiangular, FreePath
 from fogproof.reports.pictures import EXPECTED, OBSERVED, THIRD
 from fogproof.scene import HenyeyGreenstein, Medium, PointLight, Ray
 
@@ -33,7 +33,7 @@ class SamplesAroundALight:
         share = part / part.sum()
         u = self.rng.random((self.samples, 1))
         equiangular = np.histogram(Equiangular(h, a, b).sample(u).x, edges)[0] / self.samples
-        path = np.histogram(HomogeneousFreePath(sigma_t).sample(u).x + a, edges)[0] / self.samples
+        path = np.histogram(FreePath(sigma_t).sample(u).x + a, edges)[0] / self.samples
         distance, width = edges - a, np.diff(edges)
         for value, colour, name in ((path, THIRD, "free-path samples"), (equiangular, OBSERVED, "equiangular samples")):
             axes.stairs(value / width, distance, fill=True, color=colour, alpha=0.4, label=name)
@@ -67,9 +67,7 @@ class Glow:
         exact = image.copy()
         for i, j in np.ndindex(self.height, self.width // 2):
             ray = Ray([0, 0, 0], view[i, j + self.width // 2])
-            image[i, j + self.width // 2] = (
-                EquiangularAirlight(medium, ray, light).draw(self.rng, self.samples).value.mean()
-            )
+            image[i, j + self.width // 2] = Airlight(medium, ray, light).draw(self.rng, self.samples).value.mean()
         axes = figure.add_axes((0.02, 0.08, 0.80, 0.88))
         shown = axes.imshow(image, norm=LogNorm(exact.min(), np.quantile(exact, 0.999)), cmap="cividis", aspect="auto")
         axes.set(xticks=[], yticks=[])

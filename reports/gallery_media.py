@@ -70,7 +70,7 @@ class Fog:
             medium = Medium(sigma_t * (1 - albedo), sigma_t * albedo)
             value = ambient_fog(medium, _ray(_DISTANCE), ambient, background).value
             axes.plot(_DISTANCE, value, color=colour, linestyle=style, label=f"sigma_t = {sigma_t:g} 1/m")
-            drawn = [AnalogFog(medium, z, ambient, background).draw(self.rng, self.samples).value for z in _STOPS]
+            drawn = [AnalogFog(medium, _ray(z), ambient, background).draw(self.rng, self.samples).value for z in _STOPS]
             mean = [float(np.mean(values)) for values in drawn]
             error = [float(np.std(values)) / np.sqrt(self.samples) for values in drawn]
             axes.errorbar(_STOPS, mean, 2 * np.array(error), fmt="o", color=colour, markersize=4)

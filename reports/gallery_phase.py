@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fogproof.analytic import phase_cdf, phase_pdf
-from fogproof.estimators import direction_sampler
+from fogproof.estimators import Directions
 from fogproof.reports.pictures import EXPECTED, INK, OBSERVED, THIRD
 from fogproof.scene import HenyeyGreenstein, Isotropic, Mie, PhaseFunction, Rayleigh, Schlick
 
@@ -64,7 +64,7 @@ class Linear:
         worst = 0.0
         for g, look in zip((-0.5, 0.0, 0.8), _LINES, strict=False):
             phase = HenyeyGreenstein(g)
-            drawn = direction_sampler(phase).sample(self.rng.random((self.samples, 2))).x[:, 2]
+            drawn = Directions(phase).sample(self.rng.random((self.samples, 2))).x[:, 2]
             share = np.histogram(drawn, edges)[0] / self.samples
             expected = np.diff(phase_cdf(phase, edges).value)
             worst = max(worst, float(np.abs(share - expected).max()))

@@ -63,7 +63,7 @@ class SkyAndSunset:
             return transmittance(medium, ray).value, np.array(drawn)
         air = [Medium(0.0, b, Rayleigh()) for b in beta]
         exact = [float(ambient_fog(medium, ray, 1.0, 0.0).value) for medium in air]
-        drawn = [AnalogFog(medium, length, 1.0, 0.0).draw(self.rng, self.samples).value.mean() for medium in air]
+        drawn = [AnalogFog(medium, ray, 1.0, 0.0).draw(self.rng, self.samples).value.mean() for medium in air]
         return np.array(exact), np.array(drawn)
 
 

@@ -82,6 +82,15 @@ def test_table_of_known_values(row):
         assert within(reference, mp.mpf(row["I"])) <= 1e-14
 
 
+@pytest.mark.parametrize("end", [1.0, 10.0, 25.5, 25.6, 30.0, 1e3, math.inf])
+@pytest.mark.parametrize("g", [-0.9999, -0.97, -0.5, 0.5, 0.97, 0.9999])
+def test_a_ray_that_ends_in_the_peak_of_the_phase_function(g, end):
+    """The edges of the quadrature's panels matter to their last digit where the integrand ends at its largest."""
+    h = 10.0**-10.75
+    phase = HenyeyGreenstein(g)
+    within(airlight_integral(0.0, h, -100.0, end * h, phase), airlight(0.0, h, -100.0, end * h, phase))
+
+
 @given(segments(), phases)
 @settings(max_examples=300, deadline=None)
 def test_hard_cases(segment, phase):

@@ -111,7 +111,7 @@ def _draw(x, **more):
 WRONG = {
     "pdf off by 1e-6": ("interval", {"pdf": lambda x: np.full(len(x), (1 + 1e-6) / 3)}, "normalisation"),
     "pdf of the wrong measure": ("sphere", {"pdf": lambda x: np.full(len(x), 0.5)}, "normalisation"),
-    "uniform in radius": ("disk", {"sample": lambda u: disk(u) * np.sqrt(u[:, :1])}, "distribution of r^2"),
+    "uniform in radius": ("disk", {"sample": lambda u: disk(u) * np.sqrt(u[:, :1])}, "distribution of r"),
     "part of the circle": ("sphere", {"sample": lambda u: sphere(u * [1, 0.95])}, "distribution of phi"),
     "sampled where the pdf is 0": (
         "interval", {"pdf": lambda x: np.where(x > 4.9, 0, 1 / 2.9)}, "positive pdf"),
@@ -127,7 +127,7 @@ WRONG = {
     "albedo": ("weights", {"albedo": 0.31}, "albedo"),
     "cdf": ("square, skewed", {"cdf": lambda x: x}, "chi-square, joint"),
     "given up": (
-        "interval", {"sample": lambda u: _draw(2 + 3 * u[:, 0], valid=u[:, 0] > 0.05)}, "chi-square, coarse"),
+        "interval", {"sample": lambda u: _draw(2 + 3 * u[:, 0], valid=u[:, 0] > 0.05)}, "continuous part"),
 }  # fmt: skip
 
 

@@ -76,6 +76,18 @@ def true_pdf(coefficients, mu):
     return (abs(S1) ** 2 + abs(S2) ** 2) / norm
 
 
+def true_mean_cosine(coefficients):
+    a, b = coefficients
+    same = sum(mp.mpf(2 * n + 1) / (n * (n + 1)) * (a[n - 1] * mp.conj(b[n - 1])).real for n in range(1, len(a) + 1))
+    step = sum(
+        mp.mpf(n * (n + 2)) / (n + 1) * (a[n - 1] * mp.conj(a[n]) + b[n - 1] * mp.conj(b[n])).real
+        for n in range(1, len(a))
+    )
+    return (
+        2 * (same + step) / sum((2 * n + 1) * (abs(a[n - 1]) ** 2 + abs(b[n - 1]) ** 2) for n in range(1, len(a) + 1))
+    )
+
+
 def assert_pdf(sphere, cosines):
     with mp.workdps(40):
         coefficients = true_coefficients(sphere)
@@ -84,11 +96,14 @@ def assert_pdf(sphere, cosines):
             truth = true_pdf(coefficients, mp.mpf(float(mu)))
             assert abs(mp.mpf(float(value)) - truth) <= error, (sphere, mu, mp.nstr(truth, 17), value, error)
             assert error <= 1e-6 * truth
+        mean = phase_mean_cosine(sphere)
+        assert abs(mp.mpf(float(mean.value)) - true_mean_cosine(coefficients)) <= float(mean.error)
 
 
 indices = st.one_of(
     st.floats(1.01, 2.5),
     st.floats(0.5, 0.99),
+    st.floats(-6, -2).map(lambda e: 1 + 10.0**e),
     st.builds(complex, st.floats(0.2, 3), st.floats(-8, 0.5).map(lambda e: 10.0**e)),
 )
 

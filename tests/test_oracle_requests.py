@@ -11,7 +11,8 @@ import pytest
 
 from fogproof import HenyeyGreenstein, analytic
 from fogproof.checks import jsonable
-from fogproof.oracle import PROTOCOL, answer_text, quantities, schema
+from fogproof.oracle import PROTOCOL, answer_text, schema
+from fogproof.quantities import quantities
 
 ROOT = Path(__file__).resolve().parent.parent
 RAY = {"origin": [0, 0, -2], "direction": [0, 0, 1], "length": 5}
@@ -36,6 +37,14 @@ REQUESTS = [
     {"quantity": "single_scattering", "medium": FOG, "ray": RAY, "light": LAMP,
      "occluders": [{"kind": "sphere", "center": [0.5, 0.5, 0], "radius": 0.1}]},
     {"quantity": "radiance", "medium": {**FOG, "emission": 1}, "ray": RAY, "scattering": "single", "light": LAMP, "background": 2},
+    {"quantity": "transmittance_second_moment", "medium": VOXELS, "ray": RAY,
+     "tracking": "residual-ratio", "majorant": 2, "control": 1},
+    {"quantity": "ambient_fog_variance", "medium": FOG, "ray": RAY, "ambient": 1},
+    {"quantity": "air_cross_section", "wavelength": [4e-7, 5e-7]},
+    {"quantity": "air_optical_depth", "wavelength": 5e-7},
+    {"quantity": "plane_parallel_sky", "tau": [0.1, 0.3], "mu_sun": 0.5, "mu_view": 0.9, "azimuth": 0},
+    {"quantity": "sky_colour", "mu_sun": 0.5, "mu_view": [0.5, 0.9], "azimuth": 0},
+    {"quantity": "sun_colour", "air_mass": [1, 10]},
     {"quantity": "transmittance_variance", "medium": ATMOSPHERE, "ray": RAY, "tracking": "ratio", "majorant": 2},
     {"quantity": "transmittance_lookups", "medium": FOG, "ray": RAY, "tracking": "delta", "majorant": 2},
     {"quantity": "single_scattering_variance", "medium": FOG, "ray": RAY, "light": LAMP, "sampling": "equiangular"},
@@ -120,3 +129,17 @@ def test_a_conversation_over_a_pipe():
             assert json.loads(oracle.stdout.readline())["value"] > 0
         oracle.stdin.close()
         assert oracle.wait(timeout=60) == 0
+
+
+PROVEN = [request for request in REQUESTS if "rigorous" in quantities()[request["quantity"]].arguments]
+
+
+@pytest.mark.parametrize("request_", PROVEN, ids=lambda r: r["quantity"])
+def test_a_proven_enclosure_lies_within_the_ordinary_answer(request_):
+    ordinary, proven = (answer_text(json.dumps(request_), rigorous) for rigorous in (False, True))
+    assert "ball" in proven["method"].lower()
+    assert np.all(np.abs(ordinary["value"] - proven["value"]) + proven["error"] <= ordinary["error"] + 1e-300)
+
+
+def test_what_has_no_proof_says_so():
+    assert answer_text(json.dumps(PHASE), True)["error"]["code"] == "unsupported"

@@ -21,7 +21,8 @@ from fogproof.catalogue import all_cases
 from fogproof.checks import Verdict, check_estimator, check_sampler, fresh_seed
 from fogproof.contracts import Reference
 from fogproof.domains import Discrete, HalfLine, Interval, UnitSphere, UnitSquare
-from fogproof.estimators import HenyeyGreensteinDirections, HomogeneousFreePath, RayleighDirections
+from fogproof.estimators import Directions, FreePath
+from fogproof.scene import HenyeyGreenstein, Rayleigh
 
 
 @dataclass
@@ -54,7 +55,7 @@ class PValues:
 
 def _subjects() -> list[tuple]:
     """Right samplers on several domains: (sample, pdf, domain, options)."""
-    hg, rayleigh, path = HenyeyGreensteinDirections(0.7), RayleighDirections(), HomogeneousFreePath(1.4, 0.5)
+    hg, rayleigh, path = Directions(HenyeyGreenstein(0.7)), Directions(Rayleigh()), FreePath(1.4, 0.5)
     return [
         (hg.sample, hg.pdf, hg.domain, {"dimensions": 2}),
         (rayleigh.sample, rayleigh.pdf, UnitSphere(), {"dimensions": 2}),

@@ -17,6 +17,7 @@ from fogproof.scene import HenyeyGreenstein, Isotropic, Medium, PointLight, Ray,
 if TYPE_CHECKING:
     from fogproof.checks import Finding, Verdict, check_estimator, check_sampler
     from fogproof.scene.files import read_scene
+    from fogproof.scene.volume_files import read_voxel_grid
 
 __version__ = "0.1.0"
 
@@ -48,6 +49,7 @@ __all__ = [
     "check_estimator",
     "check_sampler",
     "read_scene",
+    "read_voxel_grid",
 ]
 
 _LAZY = {
@@ -56,6 +58,7 @@ _LAZY = {
     "Verdict": "fogproof.checks",
     "Finding": "fogproof.checks",
     "read_scene": "fogproof.scene.files",
+    "read_voxel_grid": "fogproof.scene.volume_files",
 }
 _SUBPACKAGES = {"adapters", "analytic", "catalogue", "checks", "estimators", "reports", "scene"}
 

@@ -10,157 +10,18 @@ Numbers may be nested lists, which broadcast. Numbers that JSON lacks are the st
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
-from dataclasses import dataclass
-from functools import cache
 from typing import Any, Literal
 
-from fogproof import analytic
-from fogproof.analytic.airlight import Method
-from fogproof.analytic.airlight_moments import Sampling
-from fogproof.analytic.second_moments import Tracking
-from fogproof.contracts import Reference
-from fogproof.errors import FogproofError, InvalidInputError, shorten
-from fogproof.scene import Isotropic, Medium, Ray, Scattering, Scene
-from fogproof.scene.arrays import FloatArray
-from fogproof.scene.complex_numbers import ComplexNumber
+from fogproof.errors import FogproofError, InvalidInputError, UnsupportedError, shorten
+from fogproof.quantities import quantities
+from fogproof.scene import Medium
 from fogproof.scene.files import input_model, read_fields
-from fogproof.scene.lights import LIGHTS, LightField, PointLight
-from fogproof.scene.media import MEDIA, AnyMediumField
-from fogproof.scene.occluders import OCCLUDERS, OccluderField
-from fogproof.scene.phase_functions import PHASE_FUNCTIONS, PhaseFunctionField
-from fogproof.validate import Channels
+from fogproof.scene.lights import LIGHTS, PointLight
+from fogproof.scene.media import MEDIA
+from fogproof.scene.occluders import OCCLUDERS
+from fogproof.scene.phase_functions import PHASE_FUNCTIONS
 
 PROTOCOL = "fogproof/oracle/1"
-_FORWARD = "mu is the forward cosine: propagation direction in . propagation direction out"
-
-
-@dataclass(frozen=True)
-class Quantity:
-    """A question the oracle answers: its function, its arguments (type, or (type, default)), unit and convention."""
-
-    function: Callable[..., Reference]
-    arguments: dict[str, Any]
-    unit: str
-    convention: str
-
-
-@cache
-def quantities() -> dict[str, Quantity]:
-    """Return every quantity by name."""
-    scene = {"medium": AnyMediumField, "ray": Ray}
-    airlight = {"sigma_t": FloatArray, "h": FloatArray, "a": FloatArray, "b": FloatArray}
-    phase = {"phase": PhaseFunctionField}
-    how = {"method": (Method, "asinh")}
-    tracker = {"tracking": Tracking, "majorant": (Channels | None, None), "control": (Channels, 0.0)}
-    radiance = "W/(m^2 sr)"
-    return {
-        "optical_thickness": Quantity(analytic.optical_thickness, scene, "1", "integral of sigma_t along the ray"),
-        "transmittance": Quantity(
-            analytic.transmittance, scene, "1", "fraction of the radiance that arrives: exp(-optical thickness)"
-        ),
-        "free_path": Quantity(
-            analytic.free_path,
-            {**scene, "tau": FloatArray},
-            "m",
-            "distance at which the optical thickness is tau; inf where the ray ends or escapes before",
-        ),
-        "ambient_fog": Quantity(
-            analytic.ambient_fog,
-            {**scene, "ambient": (Channels, 0.0), "background": (Channels, 0.0)},
-            radiance,
-            "in-scattered radiance constant along the ray; emission is multiplied by sigma_a",
-        ),
-        "emitted_radiance": Quantity(
-            analytic.emitted_radiance,
-            {**scene, "times_sigma_a": (bool, True)},
-            radiance,
-            "times_sigma_a: the medium's emission is L_e and is multiplied by sigma_a; otherwise it is a power per volume",
-        ),
-        "white_furnace": Quantity(
-            analytic.white_furnace,
-            {**scene, "radiance": (Channels, 1.0)},
-            radiance,
-            "albedo 1 in uniform light: nothing changes",
-        ),
-        "thermal_furnace": Quantity(
-            analytic.thermal_furnace,
-            {**scene, "radiance": (Channels, 1.0)},
-            radiance,
-            "emission equal to the surrounding radiance: nothing changes",
-        ),
-        "single_scattering": Quantity(
-            analytic.single_scattering,
-            {**scene, "light": LightField, "occluders": (tuple[OccluderField, ...], ()), **how},
-            radiance,
-            "airlight alone, without the background; the light's intensity is in W/sr; " + _FORWARD,
-        ),
-        "radiance": Quantity(
-            lambda **scene: analytic.radiance(Scene(**scene)),
-            {
-                **scene,
-                "scattering": (Scattering, "none"),
-                "light": (LightField | None, None),
-                "occluders": (tuple[OccluderField, ...], ()),
-                "ambient": (Channels, 0.0),
-                "background": (Channels, 0.0),
-            },
-            radiance,
-            "everything a camera ray sees: background, emission, and in-scattering as far as `scattering` says",
-        ),
-        "transmittance_variance": Quantity(
-            analytic.transmittance_variance,
-            {**scene, **tracker},
-            "1",
-            "variance of one realisation of a tracker's estimate",
-        ),
-        "transmittance_lookups": Quantity(
-            analytic.transmittance_lookups,
-            {**scene, **tracker},
-            "1",
-            "expected look-ups of the medium in one realisation",
-        ),
-        "single_scattering_variance": Quantity(
-            analytic.single_scattering_variance,
-            {**scene, "light": PointLight, "sampling": Sampling},
-            "(W/(m^2 sr))^2",
-            "variance of one realisation that places its scattering event by `sampling`",
-        ),
-        "airlight_integral": Quantity(
-            analytic.airlight_integral,
-            {**airlight, "phase": (PhaseFunctionField, Isotropic()), **how},
-            "1/m",
-            "integral over t in [a, b] of exp(-sigma_t ((t - a) + r)) / r^2 4 pi f_p(-t/r), r^2 = t^2 + h^2",
-        ),
-        "airlight_table": Quantity(
-            analytic.airlight_table,
-            {**airlight, "phase": (PhaseFunctionField, Isotropic()), **how},
-            "1/m",
-            "airlight_integral on the grid of h, a and b, in this order of axes",
-        ),
-        "phase_pdf": Quantity(analytic.phase_pdf, {**phase, "mu": FloatArray}, "1/sr", _FORWARD),
-        "phase_cdf": Quantity(
-            analytic.phase_cdf, {**phase, "mu": FloatArray}, "1", "probability that the cosine is <= mu; " + _FORWARD
-        ),
-        "phase_quantile": Quantity(
-            analytic.phase_quantile,
-            {**phase, "xi": FloatArray},
-            "1",
-            "the cosine below which a share xi is scattered; " + _FORWARD,
-        ),
-        "phase_mean_cosine": Quantity(analytic.phase_mean_cosine, phase, "1", "g, the mean of mu; " + _FORWARD),
-        "rayleigh_scattering_coefficient": Quantity(
-            analytic.rayleigh_scattering_coefficient,
-            {
-                "diameter": FloatArray,
-                "refractive_index": ComplexNumber,
-                "number_density": FloatArray,
-                "wavelength": FloatArray,
-            },
-            "1/m",
-            "lengths in m, number density in 1/m^3, refractive index and wavelength as the medium sees them",
-        ),
-    }
 
 
 def schema() -> dict[str, Any]:
@@ -227,8 +88,11 @@ def schema() -> dict[str, Any]:
     }
 
 
-def answer(request: Any) -> dict[str, Any]:
-    """Answer one request; raises `FogproofError` for a bad one. The value is not yet JSON-ready where it is infinite."""
+def answer(request: Any, rigorous: bool = False) -> dict[str, Any]:
+    """Answer one request; raises `FogproofError` for a bad one. The value is not yet JSON-ready where it is infinite.
+
+    rigorous  answer with an enclosure proven by ball arithmetic, whatever the request says
+    """
     if not isinstance(request, dict):
         raise InvalidInputError(f"request: must be a JSON object, got {shorten(request)}")
     if "quantity" not in request:
@@ -240,6 +104,11 @@ def answer(request: Any) -> dict[str, Any]:
             f"request: quantity {shorten(name)} is not known; known are {', '.join(quantities())}", "quantity"
         )
     arguments = {key: value for key, value in request.items() if key not in ("quantity", "id")}
+    if rigorous:
+        if "rigorous" not in known.arguments:
+            proven = [name for name, quantity in quantities().items() if "rigorous" in quantity.arguments]
+            raise UnsupportedError(f"{name} has no proven enclosure; {', '.join(proven)} have", "quantity")
+        arguments["rigorous"] = True
     result = known.function(**read_fields(known.arguments, arguments, "request"))
     return {
         "protocol": PROTOCOL,
@@ -254,7 +123,7 @@ def answer(request: Any) -> dict[str, Any]:
     }
 
 
-def answer_text(text: str) -> dict[str, Any]:
+def answer_text(text: str, rigorous: bool = False) -> dict[str, Any]:
     """Answer a request given as JSON text: the answer, or `{"error": {"code", "message", "path"}}`."""
     request: Any = None
     try:
@@ -262,7 +131,7 @@ def answer_text(text: str) -> dict[str, Any]:
             request = json.loads(text)
         except (json.JSONDecodeError, RecursionError) as error:
             raise InvalidInputError(f"request is not valid JSON: {error}") from None
-        return answer(request)
+        return answer(request, rigorous)
     except FogproofError as error:
         named = {"id": request["id"]} if isinstance(request, dict) and "id" in request else {}
         return {"protocol": PROTOCOL, **named, "error": error.to_dict()}

@@ -19,7 +19,7 @@ from fogproof.scene import (
     Scene,
     VoxelGrid,
 )
-from fogproof.scene.lights import PointLight, SpotLight, strength
+from fogproof.scene.lights import Environment, PointLight, SpotLight, strength
 
 
 @dataclass(frozen=True)
@@ -74,13 +74,15 @@ def plan(scene: Scene) -> Plan:
         return Plan(
             terms,
             "single_scattering",
-            "EquiangularAirlight",
+            "Airlight, placing 'equiangular'",
             "the airlight integral has no elementary form but converges fast after t = h sinh s; equiangular sampling cancels"
             " the light's 1/r^2",
         )
     if light and homogeneous:
         why = "in-scattered radiance from outside: the free path places the event, no 1/r^2 is in the way"
-        return Plan(terms, "single_scattering", "FreePathAirlight", why)
+        around = isinstance(scene.light, Environment)
+        estimator = "EnvironmentAirlight" if around else "Airlight, placing 'distance'"
+        return Plan(terms, "single_scattering", estimator, why)
     if light:
         why = (
             "nested adaptive quadrature; equiangular sampling with the transmittance of both legs estimated by tracking"

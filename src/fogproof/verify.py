@@ -22,7 +22,8 @@ from fogproof.errors import FogproofError, InvalidInputError, NotInstalledError
 
 SCHEMA = "fogproof/results/1"
 Status = Literal["passed", "rejected", "inconclusive", "known", "surprise", "skipped", "error"]
-_PACKAGES = {"mitsuba": "Mitsuba 3"}
+_PACKAGES = {"mitsuba": ("Mitsuba 3", "mitsuba"), "miepython": ("miepython", "mie")}
+"""Name and extra of each module that a case may need."""
 
 
 @dataclass(frozen=True)
@@ -78,7 +79,7 @@ def run_case(case: Case, seed: int, alpha: float) -> Result:
     started = time.perf_counter()
     try:
         if case.needs and importlib.util.find_spec(case.needs) is None:
-            raise NotInstalledError(_PACKAGES[case.needs], case.needs)
+            raise NotInstalledError(*_PACKAGES[case.needs])
         verdict = case.run(alpha, case_seed(seed, case.name))
     except NotInstalledError as error:
         return Result(case, "skipped", None, str(error), time.perf_counter() - started)

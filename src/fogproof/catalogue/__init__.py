@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from functools import cache
 
-from fogproof.catalogue import directions, equiangular, free_paths, mitsuba, single_scattering, transmittance_and_fog
+from fogproof.catalogue import (
+    cosines,
+    directions,
+    equiangular,
+    free_paths,
+    mitsuba,
+    single_scattering,
+    transmittance_and_fog,
+)
 from fogproof.catalogue.cases import Altered, Case, EstimatorCase, SamplerCase, Twin
 
 __all__ = ["Altered", "Case", "EstimatorCase", "SamplerCase", "Twin", "all_cases"]
@@ -13,5 +21,5 @@ __all__ = ["Altered", "Case", "EstimatorCase", "SamplerCase", "Twin", "all_cases
 @cache
 def all_cases() -> tuple[Case, ...]:
     """Return every case, in the order in which it is reported."""
-    groups = (directions, free_paths, equiangular, transmittance_and_fog, single_scattering, mitsuba)
+    groups = (directions, cosines, free_paths, equiangular, transmittance_and_fog, single_scattering, mitsuba)
     return tuple(case for group in groups for case in group.cases())

@@ -36,6 +36,11 @@ class Altered:
         """The original's atoms."""
         return getattr(self.original, "atoms", {})
 
+    @property
+    def eval(self) -> Callable[[np.ndarray], np.ndarray] | None:
+        """What the original's weights are for, if it has any."""
+        return getattr(self.original, "eval", None)
+
     def sample(self, u: np.ndarray) -> Any:
         """Sample as the original does, or as its replacement."""
         return self.original.sample(u) if self.alter_sample is None else self.alter_sample(self.original, u)
@@ -103,7 +108,11 @@ class SamplerCase:
 
 @dataclass(frozen=True, kw_only=True)
 class EstimatorCase:
-    """An estimator against its oracle; the fields are those of `SamplerCase`, but the reference is one value."""
+    """An estimator against its oracle; the fields are those of `SamplerCase`, but the reference is one value.
+
+    variance  the oracle's variance of one realisation, if it knows it
+    cost      the oracle's expectation of the cost of one realisation, if it knows it
+    """
 
     kind: Literal["estimator"] = "estimator"
     name: str
@@ -113,6 +122,8 @@ class EstimatorCase:
     oracle: str
     source: str
     twin: Twin
+    variance: Callable[[], Reference | float] | None = None
+    cost: Callable[[], Reference | float] | None = None
     options: Mapping[str, Any] = field(default_factory=dict)
     samples: int = 1_000_000
     weight: float = 1.0
@@ -124,7 +135,14 @@ class EstimatorCase:
         """Check the subject, or its twin, inside the false-alarm probability alpha."""
         estimator = self.twin.make() if twin else self.make()
         return check_estimator(
-            estimator.draw, self.reference(), samples=samples or self.samples, alpha=alpha, seed=seed, **self.options
+            estimator.draw,
+            self.reference(),
+            variance=self.variance() if self.variance else None,
+            cost=self.cost() if self.cost else None,
+            samples=samples or self.samples,
+            alpha=alpha,
+            seed=seed,
+            **self.options,
         )
 
 

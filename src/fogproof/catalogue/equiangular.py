@@ -7,10 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from fogproof.analytic import airlight_integral
+from fogproof.analytic import airlight_integral, transmittance
 from fogproof.catalogue.cases import Altered, SamplerCase, Twin
-from fogproof.contracts import Reference
-from fogproof.estimators import Equiangular
+from fogproof.contracts import Draw, Reference
+from fogproof.estimators import Equiangular, LitMedium, placer
+from fogproof.scene import Medium, PointLight, Ray
 
 
 def _density(h: float, a: float, b: float) -> Callable[[np.ndarray], Reference]:
@@ -25,7 +26,7 @@ def _density(h: float, a: float, b: float) -> Callable[[np.ndarray], Reference]:
 
 
 def _case(
-    name: str, title: str, h: float, a: float, b: float, error: str, sample: Any = None, pdf: Any = None
+    name: str, title: str, h: float, a: float, b: float, error: str, sample: Any = None, pdf: Any = None, **options: Any
 ) -> SamplerCase:
     def make() -> Equiangular:
         return Equiangular(h, a, b)
@@ -38,7 +39,37 @@ def _case(
         oracle="airlight_integral at sigma_t = 0",
         source="Kulla & Fajardo 2012",
         twin=Twin(error, lambda: Altered(make(), sample, pdf)),
+        options=options,
     )
+
+
+def _mean_of_both(h: float, a: float, b: float, sigma_t: float) -> Callable[[np.ndarray], Reference]:
+    """Half of an equiangular place, half of a free path that ends on the segment, t counted from its start."""
+
+    def reference(t: np.ndarray) -> Reference:
+        first, ray = _density(h, a, b)(t + a), Ray((0, 0, 0), (0, 0, 1), np.maximum(t, np.finfo(float).tiny))
+        through, whole = transmittance(Medium(sigma_t, 0.0), ray), transmittance(Medium(sigma_t, 0.0), _to(b - a))
+        second = sigma_t * through.value / (1 - whole.value)
+        error = 0.5 * (first.error + second * (through.error / through.value + whole.error / (1 - whole.value) + 1e-15))
+        return Reference(0.5 * (first.value + second), error + 2e-15, first.method, "Veach & Guibas 1995")
+
+    return reference
+
+
+def _to(length: float) -> Ray:
+    return Ray((0, 0, 0), (0, 0, 1), length)
+
+
+def _mixed(h: float, a: float, b: float, sigma_t: float) -> Any:
+    light = PointLight((h, 0.0, -a), 1.0)
+    return placer(LitMedium(Medium(0.0, sigma_t), _to(b - a), light), "mixed")
+
+
+def _chosen_density(sampler: Any, u: np.ndarray) -> Draw:
+    """The density of the sampler that the coin chose, as if there were no other."""
+    draw = sampler.sample(u)
+    chosen = np.where(u[:, 0] < 0.5, sampler.first.pdf(draw.x), sampler.second.pdf(draw.x))
+    return draw._replace(pdf=chosen)
 
 
 def _uniform(sampler: Equiangular, u: np.ndarray) -> np.ndarray:
@@ -82,4 +113,26 @@ def cases() -> list[SamplerCase]:
             _from_camera,
         ),
         _case("infinite", "Equiangular on a ray without end", 2.0, -3.0, np.inf, "the sign of t is lost", _mirrored),
+        _case(
+            "float32",
+            "Equiangular in single precision, light beside the ray",
+            0.05,
+            -1.0,
+            3.0,
+            "t counted from the camera, not the foot",
+            _from_camera,
+            precision="float32",
+        ),
+        SamplerCase(
+            name="equiangular/mixed",
+            title="Equiangular or free path by a coin",
+            make=lambda: _mixed(0.3, -1.5, 2.5, 0.8),
+            reference=_mean_of_both(0.3, -1.5, 2.5, 0.8),
+            oracle="airlight_integral at sigma_t = 0, transmittance",
+            source="Veach & Guibas 1995; Kulla & Fajardo 2012",
+            twin=Twin(
+                "the density returned is that of the chosen sampler alone",
+                lambda: Altered(_mixed(0.3, -1.5, 2.5, 0.8), _chosen_density),
+            ),
+        ),
     ]

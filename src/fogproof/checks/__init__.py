@@ -3,10 +3,11 @@
 from fogproof.checks.estimator import check_estimator
 from fogproof.checks.sampler import check_sampler
 from fogproof.checks.streams import batch_generator, batch_sizes, fresh_seed
-from fogproof.checks.verdict import Finding, Outcome, RejectedError, Resolution, Verdict, jsonable
+from fogproof.checks.verdict import Finding, Interval, Outcome, RejectedError, Resolution, Verdict, jsonable
 
 __all__ = [
     "Finding",
+    "Interval",
     "Outcome",
     "RejectedError",
     "Resolution",

@@ -1,8 +1,12 @@
-"""Charts: each domain as a box of one or two coordinates, in which bins are boxes and integrals are iterated.
+"""Charts: each domain as a box of one or two coordinates, in which integrals are iterated and cells are boxes.
 
-The measure of the domain is `jacobian` times the box's own. Sphere and hemisphere use (mu, phi) about a pole, whose measure is the
-solid angle itself; the disk uses (r^2, phi). Unbounded lines are mapped to (0, 1) by a rational map scaled by a pilot sample, so
-that the density's bulk lies in the middle whatever its unit.
+The measure of the domain is `jacobian` times the box's own. Sphere and hemisphere use (theta, phi) about a pole, in which every
+smooth density is smooth; the disk uses (r, phi). Unbounded lines are mapped to (0, 1) by a rational map scaled by a pilot sample,
+so that the density's bulk lies in the middle whatever its unit.
+
+A coordinate has three forms: the one integrated over; the one samples are counted in, a cheap increasing function of it (for theta
+the versine 1 - cos theta, computed without loss near either pole, whatever the rounding of the vector's length); and the one shown
+to people (for theta the forward cosine mu).
 """
 
 from __future__ import annotations
@@ -25,39 +29,78 @@ from fogproof.domains import (
 )
 from fogproof.errors import InvalidValueError
 
+Map = Callable[[np.ndarray], np.ndarray]
+
+
+def _same(c: np.ndarray) -> np.ndarray:
+    return c
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One coordinate of a chart, from `low` to `high`.
+
+    label      what people call the coordinate they are shown
+    ends       whether its ends are ends of the domain: those of an angle that runs round are not
+    counted    (m,) coordinate -> the increasing function of it that samples are counted in
+    uncounted  its inverse
+    shown      (m,) coordinate -> what people are shown
+    """
+
+    label: str
+    low: float
+    high: float
+    ends: bool = True
+    counted: Map = _same
+    uncounted: Map = _same
+    shown: Map = _same
+
 
 @dataclass(frozen=True)
 class Chart:
-    """Coordinates of a domain: `to_point` (m, k) -> points, `from_point` its inverse, `jacobian` (m, k) -> (m,)."""
+    """Coordinates of a domain.
 
-    low: tuple[float, ...]
-    high: tuple[float, ...]
-    labels: tuple[str, ...]
-    to_point: Callable[[np.ndarray], np.ndarray]
-    from_point: Callable[[np.ndarray], np.ndarray]
-    jacobian: Callable[[np.ndarray], np.ndarray]
+    to_point  (m, k) coordinates -> points
+    count     points -> the counted coordinates, one (m,) array an axis
+    jacobian  (m, k) -> (m,) the measure of the domain over that of the box
+    """
+
+    axes: tuple[Axis, ...]
+    to_point: Map
+    count: Callable[[np.ndarray], tuple[np.ndarray, ...]]
+    jacobian: Map
+
+    def coordinates(self, x: np.ndarray) -> np.ndarray:
+        """Return the (m, k) coordinates of points: exact to rounding, slower than `count`."""
+        columns = zip(self.axes, self.count(x), strict=True)
+        return np.stack([axis.uncounted(counted) for axis, counted in columns], axis=-1)
 
 
 def chart_of(domain: Domain, pilot: np.ndarray, axis: tuple[float, float, float] | None) -> Chart:
     """Return the chart of a continuous domain; `pilot` points set its scale, `axis` the pole of the sphere."""
     match domain:
         case UnitSphere():
-            return _sphere(-1.0, np.asarray(axis or (0.0, 0.0, 1.0)))
+            return _sphere(np.pi, np.asarray(axis or (0.0, 0.0, 1.0)))
         case UnitHemisphere():
-            return _sphere(0.0, np.array([0.0, 0.0, 1.0]))
+            return _sphere(np.pi / 2, np.array([0.0, 0.0, 1.0]))
         case UnitDisk():
             return _disk()
         case UnitSquare():
-            return Chart((0.0, 0.0), (1.0, 1.0), ("x", "y"), _same, _same, _ones)
+            return unit_square(("x", "y"))
         case Interval(a, b):
-            return Chart((a,), (b,), ("x",), _line_point, _line_coordinate, _ones)
+            return Chart((Axis("x", a, b),), lambda c: c[:, 0], lambda x: (x,), _ones)
         case HalfLine(a):
             return _half_line(a, float(np.median(pilot - a)) if len(pilot) else 1.0)
         case RealLine():
-            center, spread = _center_and_spread(pilot)
-            return _real_line(center, spread)
+            return _real_line(*_center_and_spread(pilot))
         case Discrete():
             raise InvalidValueError("domain", "must be continuous to have a chart", domain)
+
+
+def unit_square(labels: tuple[str, str]) -> Chart:
+    """Return the chart of [0, 1]^2: a domain itself, and where a Rosenblatt map leads."""
+    axes = (Axis(labels[0], 0.0, 1.0), Axis(labels[1], 0.0, 1.0))
+    return Chart(axes, _same, lambda x: (x[:, 0], x[:, 1]), _ones)
 
 
 def frame(axis: np.ndarray) -> np.ndarray:
@@ -69,31 +112,42 @@ def frame(axis: np.ndarray) -> np.ndarray:
     return np.stack([t1, np.cross(axis, t1), axis])
 
 
-def _sphere(lowest: float, axis: np.ndarray) -> Chart:
+def _versine(theta: np.ndarray) -> np.ndarray:
+    return 2 * np.sin(0.5 * theta) ** 2
+
+
+def _angle(versine: np.ndarray) -> np.ndarray:
+    return 2 * np.arcsin(np.sqrt(np.clip(0.5 * versine, 0, 1)))
+
+
+def _sphere(highest: float, axis: np.ndarray) -> Chart:
     rows = frame(axis)
+    turned = not np.array_equal(rows, np.eye(3))
 
     def to_point(c: np.ndarray) -> np.ndarray:
-        mu, phi = c[:, 0], c[:, 1]
-        sine = np.sqrt((1 - mu) * (1 + mu))
-        local = np.stack([sine * np.cos(phi), sine * np.sin(phi), mu], axis=-1)
-        return local if np.array_equal(rows, np.eye(3)) else local @ rows
+        sine = np.sin(c[:, 0])
+        local = np.stack([sine * np.cos(c[:, 1]), sine * np.sin(c[:, 1]), np.cos(c[:, 0])], axis=-1)
+        return local @ rows if turned else local
 
-    def from_point(x: np.ndarray) -> np.ndarray:
-        local = x @ rows.T
-        return np.stack([np.clip(local[:, 2], lowest, 1), np.arctan2(local[:, 1], local[:, 0])], axis=-1)
+    def count(points: np.ndarray) -> tuple[np.ndarray, ...]:
+        x, y, z = np.ascontiguousarray((points @ rows.T if turned else points).T)
+        versine = (x * x + y * y) / (1 + np.abs(z))
+        return np.where(z < 0, 2 - versine, versine), np.arctan2(y, x)
 
-    return Chart((lowest, -np.pi), (1.0, np.pi), ("mu", "phi"), to_point, from_point, _ones)
+    axes = (Axis("mu", 0.0, highest, True, _versine, _angle, np.cos), Axis("phi", -np.pi, np.pi, False))
+    return Chart(axes, to_point, count, lambda c: np.sin(c[:, 0]))
 
 
 def _disk() -> Chart:
     def to_point(c: np.ndarray) -> np.ndarray:
-        r = np.sqrt(c[:, 0])
-        return np.stack([r * np.cos(c[:, 1]), r * np.sin(c[:, 1])], axis=-1)
+        return np.stack([c[:, 0] * np.cos(c[:, 1]), c[:, 0] * np.sin(c[:, 1])], axis=-1)
 
-    def from_point(x: np.ndarray) -> np.ndarray:
-        return np.stack([np.clip(np.sum(x * x, axis=-1), 0, 1), np.arctan2(x[:, 1], x[:, 0])], axis=-1)
+    def count(points: np.ndarray) -> tuple[np.ndarray, ...]:
+        x, y = np.ascontiguousarray(points.T)
+        return x * x + y * y, np.arctan2(y, x)
 
-    return Chart((0.0, -np.pi), (1.0, np.pi), ("r^2", "phi"), to_point, from_point, lambda c: np.full(len(c), 0.5))
+    axes = (Axis("r", 0.0, 1.0, True, np.square, np.sqrt), Axis("phi", -np.pi, np.pi, False))
+    return Chart(axes, to_point, count, lambda c: c[:, 0])
 
 
 def _half_line(a: float, scale: float) -> Chart:
@@ -102,27 +156,28 @@ def _half_line(a: float, scale: float) -> Chart:
     def to_point(c: np.ndarray) -> np.ndarray:
         return a + m * c[:, 0] / (1 - c[:, 0])
 
-    def from_point(x: np.ndarray) -> np.ndarray:
+    def count(x: np.ndarray) -> tuple[np.ndarray, ...]:
         t = np.maximum(x - a, 0)
-        return (t / (t + m))[:, None]
+        return (t / (t + m),)
 
-    return Chart((0.0,), (1.0,), ("x",), to_point, from_point, lambda c: m / (1 - c[:, 0]) ** 2)
+    shown = Axis("x", 0.0, 1.0, shown=lambda t: to_point(t[:, None]))
+    return Chart((shown,), to_point, count, lambda c: m / (1 - c[:, 0]) ** 2)
 
 
 def _real_line(center: float, spread: float) -> Chart:
     def to_point(c: np.ndarray) -> np.ndarray:
-        v = 2 * c[:, 0] - 1
-        return center + spread * v / np.sqrt((1 - v) * (1 + v))
+        t = c[:, 0]
+        return center + spread * (t - 0.5) / np.sqrt(t * (1 - t))
 
-    def from_point(x: np.ndarray) -> np.ndarray:
+    def count(x: np.ndarray) -> tuple[np.ndarray, ...]:
         z = (x - center) / spread
-        return (0.5 + 0.5 * z / np.hypot(1, z))[:, None]
+        return (0.5 + 0.5 * z / np.sqrt(1 + z * z),)
 
     def jacobian(c: np.ndarray) -> np.ndarray:
-        v = 2 * c[:, 0] - 1
-        return 2 * spread * ((1 - v) * (1 + v)) ** -1.5
+        return 0.25 * spread * (c[:, 0] * (1 - c[:, 0])) ** -1.5
 
-    return Chart((0.0,), (1.0,), ("x",), to_point, from_point, jacobian)
+    shown = Axis("x", 0.0, 1.0, shown=lambda t: to_point(t[:, None]))
+    return Chart((shown,), to_point, count, jacobian)
 
 
 def _center_and_spread(pilot: np.ndarray) -> tuple[float, float]:
@@ -130,17 +185,5 @@ def _center_and_spread(pilot: np.ndarray) -> tuple[float, float]:
     return float(center), float(high - low) if high > low else 1.0
 
 
-def _same(c: np.ndarray) -> np.ndarray:
-    return c
-
-
 def _ones(c: np.ndarray) -> np.ndarray:
     return np.ones(len(c))
-
-
-def _line_point(c: np.ndarray) -> np.ndarray:
-    return c[:, 0]
-
-
-def _line_coordinate(x: np.ndarray) -> np.ndarray:
-    return x[:, None]

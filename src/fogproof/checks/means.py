@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -66,6 +67,20 @@ class Moments:
             values = values if len(values) <= 2 else None
         low, high = min(self.low, other.low), max(self.high, other.high)
         return Moments(n, self.mean + dn * nb, m2, m3, m4, low, high, values)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the JSON-ready form, which keeps every bit."""
+        values = None if self.values is None else [[float.hex(v), count] for v, count in self.values.items()]
+        names = ("mean", "m2", "m3", "m4", "low", "high")
+        return {"n": self.n, "values": values, **{name: float.hex(getattr(self, name)) for name in names}}
+
+    @staticmethod
+    def from_dict(state: dict[str, Any]) -> Moments:
+        """Return the moments that `to_dict` wrote."""
+        values = state["values"]
+        values = None if values is None else {float.fromhex(v): count for v, count in values}
+        mean, m2, m3, m4, low, high = (float.fromhex(state[name]) for name in ("mean", "m2", "m3", "m4", "low", "high"))
+        return Moments(state["n"], mean, m2, m3, m4, low, high, values)
 
     @property
     def variance(self) -> float:

@@ -1,43 +1,43 @@
 """`check_sampler`: does a sampler draw from the density it claims, and is that a density?
 
 First what needs no statistics: normalisation by quadrature with an error bound, edge uniforms, domain, finite positive densities,
-returned values against pdf(x), the mean cosine, an independent reference. Then statistics on counts: Kolmogorov's distance on each
-axis, a coarse and a fine chi-square, and the exact binomial law of every atom, inside one false-alarm probability.
+returned values against pdf(x), event labels, the mean cosine, an independent reference. Then statistics on counts, each test
+seeing what the others miss, inside one false-alarm probability: Kolmogorov's distance, smooth components, chi-square, scans for
+skipped and crowded bands, the ends of each axis, the dependence of axes and of successive samples, repeated points, and every
+atom's exact law.
 """
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any, get_args
 
 import numpy as np
 
-from fogproof.checks.cells import Cells, cells_by_quadrature, masses_from_cdf, pilot_edges, unit_square_cells
-from fogproof.checks.charts import Chart, chart_of
-from fogproof.checks.contract import (
-    BUDGET,
-    Watch,
-    cdf_agreement,
-    edge_uniforms,
-    integral,
-    integral_slack,
-    normalisation,
-    reference_agreement,
-)
-from fogproof.checks.goodness import MISS, binomial, chi_square, kolmogorov
+from fogproof.checks.diagnosis import likely_cause, mirrored
+from fogproof.checks.escalation import WEIGHTS, Test, doubtful, judged, stages
+from fogproof.checks.figures import bins_figure, z_map_figure
+from fogproof.checks.goodness import binomial, chi_square, chi_square_along, chi_square_sparse, kolmogorov
+from fogproof.checks.means import Moments, mean_test
+from fogproof.checks.normalisation import FLOOR
+from fogproof.checks.prepared import Prepared, prepare
+from fogproof.checks.repeats import repeats_test
+from fogproof.checks.scan import blocks, scan, scan_ends, scan_plane
+from fogproof.checks.serial import serial_test
+from fogproof.checks.smooth import cross, smooth
 from fogproof.checks.streams import batch_generator, batch_sizes, fresh_seed
-from fogproof.checks.subject import Precision, Subject, call, in_domain, numbers
-from fogproof.checks.verdict import Finding, Verdict, jsonable
+from fogproof.checks.subject import Precision, Subject
+from fogproof.checks.tally import Tally
+from fogproof.checks.verdict import Finding, Verdict
 from fogproof.contracts import Reference
-from fogproof.domains import Discrete, Domain, HalfLine, Interval, RealLine
+from fogproof.domains import Domain, HalfLine, Interval, RealLine, UnitSphere
 from fogproof.errors import InvalidValueError
 from fogproof.validate import number
 
-_PILOT = 1 << 14  # samples that set the edges of cells; they are not counted in them
-_MOST_DIMENSIONS_AT_EDGES = 4  # 4^dimensions combinations of edge uniforms are tried
+_CELLS = 512  # of the chi-square test along an axis
 
 
 def check_sampler(
@@ -51,7 +51,7 @@ def check_sampler(
     eval: Callable[[np.ndarray], Any] | None = None,
     axis: tuple[float, float, float] | None = None,
     mean_cosine: float | None = None,
-    albedo: float | None = None,
+    albedo: float | tuple[float, ...] | None = None,
     reference: Callable[[np.ndarray], Reference] | None = None,
     precision: Precision = "float64",
     resolution: float | None = None,
@@ -66,12 +66,12 @@ def check_sampler(
     domain       where the points live, see `fogproof.domains`
     atoms        {point: probability} of a one-dimensional domain; a point may be inf
     cdf          `cdf(x)` -> (n,) P(X <= x), atoms included; on two dimensions the Rosenblatt map, (n, 2) in [0, 1]^2
-    eval         the function that weights are for: a returned weight must be eval(x) / pdf(x)
+    eval         `eval(x)` -> (n,) or (n, channels), the function that weights are for: a weight must be eval(x) / pdf(x)
     axis         unit vector; `mean_cosine` is the declared mean of x . axis on the sphere
-    albedo       the integral of `eval` over the domain
+    albedo       the integral of `eval` over the domain, one number or one a channel; without `eval`, the mean weight
     reference    x -> `Reference`: what pdf(x) should be, from an independent source
     precision    "float32" if the sampler computes in single precision: uniforms and tolerances follow
-    resolution   Kolmogorov distance to detect: fewer samples than `samples` are drawn where they suffice for it
+    resolution   Kolmogorov distance to detect: the first look is sized for it, and a sampler that is clearly right stops there
     samples      most samples to draw
     alpha        false-alarm probability of this call with everything in it
     seed         any whole number; None draws a fresh one, which the verdict states
@@ -83,49 +83,129 @@ def check_sampler(
     )
     _validate(subject, samples, alpha, resolution)
     seed = fresh_seed() if seed is None else seed
-    tests = (3 if _is_line(domain) else 5) + len(atoms)
-    share = alpha / tests
-    if resolution is not None:
-        samples = min(samples, _samples_for(resolution, share))
+    with np.errstate(all="ignore"):  # what is infinite or undefined is found, not warned of
+        prepared = prepare(subject, samples, seed)
+        tally = prepared.counter.empty()
+        looks = stages(samples, resolution, alpha, total_weight(prepared, tally))
+        findings: list[Finding] = []
+        for look in looks:
+            tally = drawn(prepared, tally, look.samples, seed)
+            prepared = prepared.refined(tally)
+            findings = judge(prepared, tally, alpha * look.share)
+            rejected = any(f.outcome == "rejected" for f in findings)
+            if rejected or (look.final and not doubtful(findings, alpha * look.share)):
+                break
+    settings = {
+        "domain": repr(domain),
+        "dimensions": dimensions,
+        "precision": precision,
+        "tests": sum(f.alpha is not None for f in findings),
+        "looks": [look.samples for look in looks],
+    }
+    reproduce = (
+        f"check_sampler({_name(sample)}, {_name(pdf)}, {domain!r}, dimensions={dimensions}, ..., samples={samples},"
+        f" alpha={alpha:g}, seed={seed})"
+    )
+    cause = likely_cause(findings)
+    return Verdict(tuple(findings), alpha, tally.drawn, seed, time.perf_counter() - started, settings, cause, reproduce)
 
-    pilot = _pilot(subject, seed)
-    rounding = integral_slack(subject, pilot)
-    findings: list[Finding] = []
-    if dimensions is not None and dimensions <= _MOST_DIMENSIONS_AT_EDGES:
-        findings.append(edge_uniforms(subject))
-    if isinstance(domain, Discrete):
-        coordinates, cells = _discrete(subject)
-        edges_shown = cells.edges
-        findings.append(normalisation(subject, cells, rounding))
+
+def drawn(prepared: Prepared, tally: Tally, samples: int, seed: int) -> Tally:
+    """Return the tally with more batches drawn, until it has `samples` samples."""
+    sizes = batch_sizes(prepared.samples)
+    index = 0
+    before = 0
+    while before < tally.drawn:
+        before += sizes[index]
+        index += 1
+    while tally.drawn < samples:
+        draw = prepared.subject.draw(batch_generator(seed, "samples", 1, index), sizes[index])
+        tally = tally.merged(prepared.counter.tally(draw, index))
+        index += 1
+    return tally
+
+
+def judge(prepared: Prepared, tally: Tally, alpha: float) -> list[Finding]:
+    """Return all findings about the samples so far; the statistical ones share alpha."""
+    findings = [prepared.normalisation(tally.drawn), *prepared.findings, *tally.watch.findings()]
+    statistical = judged(tests_of(prepared, tally), alpha)
+    rejected = any(f.outcome == "rejected" for f in statistical)
+    sphere = isinstance(prepared.subject.domain, UnitSphere) and prepared.subject.cdf is None
+    if rejected and sphere and mirrored(prepared.grid.marginals[0], tally.fine[0]):
+        statistical = [f.because("sign convention") if f.cause else f for f in statistical]
+    return findings + _illustrated(prepared, tally, statistical)
+
+
+def total_weight(prepared: Prepared, tally: Tally) -> float:
+    """Return the sum of the weights of all tests."""
+    return sum(test.weight for test in tests_of(prepared, tally))
+
+
+def tests_of(prepared: Prepared, tally: Tally) -> list[Test]:
+    """Return the statistical tests of a subject; which ones depends on what it declares, not on the samples."""
+    subject, grid = prepared.subject, prepared.grid
+    tests: list[Test] = []
+
+    def add(kind: str, run: Callable[..., Finding], name: str, *arguments: Any) -> None:
+        tests.append(Test(name, WEIGHTS[kind], partial(run, name, *arguments)))
+
+    several = len(grid.marginals) > 1
+    for axis, (marginal, counts) in enumerate(zip(grid.marginals, tally.fine, strict=True)):
+        of, along = (f" of {marginal.label}", f" in {marginal.label}") if several else ("", "")
+        add("distribution", kolmogorov, f"distribution{of}", marginal, counts)
+        add("smooth", smooth, f"smooth components{along}", marginal, counts)
+        add("chi-square", chi_square_along, f"chi-square{along}", marginal, counts, _CELLS)
+        add("scan", scan, f"scan{along}", marginal, counts)
+        if marginal.ends:
+            low, high = tally.extremes[axis]
+            add("ends", scan_ends, f"ends{of}", marginal, counts, low, high)
+    if grid.plane is not None and tally.plane is not None:
+        plane, coarse = grid.plane, blocks(tally.plane, len(grid.plane.mass))
+        labels = (grid.marginals[0].label, grid.marginals[1].label)
+        add("joint", chi_square, "chi-square, joint", coarse, plane.mass, plane.error, plane.blur(len(coarse)))
+        add("dependence", cross, "dependence of the axes", labels, plane, coarse)
+        add("patches", scan_plane, "scan for patches", labels, plane, tally.plane)
+        if plane.independent:
+            shares, blur = plane.shares[0][:, None] * plane.shares[1], plane.blur(plane.size)
+            fine = tally.plane.ravel(), shares.ravel(), blur.ravel()
+            add("fine joint", chi_square_sparse, "chi-square, fine joint", *fine)
+    add("serial correlation", serial_test, "serial correlation", tally.serial)
+    if prepared.counter.fingerprinted:
+        expected = prepared.expected_repeats(len(tally.prints))
+        add("repeated points", repeats_test, "repeated points", tally.prints, expected)
+    n = max(tally.drawn, 1)
+    wrong_atom = "wrong probability of an atom"
+    rest, slack = 1 - sum(subject.atoms.values()), FLOOR[subject.precision]
+    what, cause = "probability of the continuous part", wrong_atom if subject.atoms else "lost samples"
+    add("lost samples", binomial, "continuous part", what, tally.continuous, n, rest - slack, rest + slack, cause)
+    for point, q in subject.atoms.items():
+        what = f"probability of the atom at {point:g}"
+        add("atom", binomial, "atom", what, tally.atoms[point], n, q * (1 - 1e-15), q * (1 + 1e-15), wrong_atom)
+    if prepared.pilot.channels and subject.albedo is not None:
+        claims = np.broadcast_to(np.asarray(subject.albedo, dtype=float), (prepared.pilot.channels,))
+        data = tally.weights or (Moments(),) * len(claims)
+        for channel, claimed in enumerate(claims.tolist()):
+            name = "mean weight" if len(claims) == 1 else f"mean weight of channel {channel}"
+            add("mean weight", mean_test, name, name, data[channel], claimed, 1e-6 * abs(claimed))
+    return tests
+
+
+def _illustrated(prepared: Prepared, tally: Tally, findings: list[Finding]) -> list[Finding]:
+    """Return the findings with a figure on the first, and on every rejected one that counts cells."""
+    marginals, plane = prepared.grid.marginals, prepared.grid.plane
+    if plane is None or tally.plane is None:
+        figure = bins_figure(marginals[0], tally.fine[0])
     else:
-        chart, coordinates, cells, more = _continuous(subject, pilot, samples, rounding)
-        findings += more
-        edges_shown = cells.edges if len(cells.edges) > 1 else (_shown(chart, cells.edges[0]),)
-        if axis is not None and mean_cosine is not None:
-            findings.append(integral("mean cosine", subject, chart, cells, rounding, "pdf", mean_cosine))
-        if eval is not None and albedo is not None:
-            findings.append(integral("albedo", subject, chart, cells, rounding, "eval", albedo))
-    if reference is not None and len(pilot):
-        findings.append(reference_agreement(subject, pilot))
-
-    watch = Watch(subject)
-    counts = np.zeros(cells.mass.shape)
-    hits = dict.fromkeys(atoms, 0)
-    for index, n in enumerate(batch_sizes(samples)):
-        draw = subject.draw(batch_generator(seed, "samples", 1, index), n)
-        good = watch.look(draw)
-        counts += cells.count(coordinates(draw.x[good]))
-        for point, at in subject.at_atom(draw.x).items():
-            hits[point] += int(np.count_nonzero(at))
-    findings += watch.findings()
-    findings += _goodness(cells, counts, hits, atoms, samples, share)
-    findings[-1 - len(atoms)] = replace(findings[-1 - len(atoms)], figure=_figure(cells, counts, samples, edges_shown))
-    settings = {"domain": repr(domain), "dimensions": dimensions, "precision": precision, "tests": tests}
-    return Verdict(tuple(findings), alpha, samples, seed, time.perf_counter() - started, settings)
+        figure = z_map_figure((marginals[0], marginals[1]), plane, blocks(tally.plane, len(plane.mass)))
+    shown = []
+    for index, finding in enumerate(findings):
+        wanted = index == 0 or finding.outcome == "rejected"
+        shown.append(replace(finding, figure=figure) if wanted else finding)
+    return shown
 
 
-def _is_line(domain: Domain) -> bool:
-    return isinstance(domain, (Interval, HalfLine, RealLine, Discrete))
+def _name(function: Any) -> str:
+    return getattr(function, "__qualname__", type(function).__name__)
 
 
 def _validate(subject: Subject, samples: int, alpha: float, resolution: float | None) -> None:
@@ -144,121 +224,5 @@ def _validate(subject: Subject, samples: int, alpha: float, resolution: float | 
         raise InvalidValueError("atoms", "need a domain of one dimension", subject.domain)
     for point, probability in subject.atoms.items():
         number(f"atoms[{point!r}]", probability, "must be a probability in [0, 1]", 0, 1)
-    if (subject.mean_cosine is None) != (subject.axis is None) and subject.mean_cosine is not None:
+    if subject.mean_cosine is not None and subject.axis is None:
         raise InvalidValueError("axis", "must be given with mean_cosine", subject.axis)
-
-
-def _samples_for(resolution: float, alpha: float) -> int:
-    """Return how many samples detect a Kolmogorov distance `resolution` but for a probability `MISS`."""
-    wanted = (math.sqrt(math.log(2 / alpha)) + math.sqrt(math.log(1 / MISS))) ** 2 / (2 * resolution**2)
-    return max(1000, math.ceil(wanted))
-
-
-def _pilot(subject: Subject, seed: int) -> np.ndarray:
-    """Draw the pilot; return its good points of the continuous part."""
-    draw = subject.draw(batch_generator(seed, "samples", 0, 0), _PILOT)
-    good = in_domain(subject.domain, draw.x, subject.roundoff)
-    for at in subject.at_atom(draw.x).values():
-        good &= ~at
-    if draw.valid is not None:
-        good &= draw.valid
-    return draw.x[good]
-
-
-def _discrete(subject: Subject) -> tuple[Callable[[np.ndarray], np.ndarray], Cells]:
-    assert isinstance(subject.domain, Discrete)
-    n = subject.domain.n
-    mass = subject.density(np.arange(n, dtype=np.float64))
-    error = np.full(n, 4 * subject.roundoff) * mass
-    cells = Cells(
-        (np.arange(n + 1) - 0.5,), ("x",), mass, error, float(mass.sum()), float(error.sum()), n, complete=True
-    )
-    return (lambda x: x[:, None]), cells
-
-
-def _continuous(
-    subject: Subject, pilot: np.ndarray, samples: int, rounding: float
-) -> tuple[Chart, Callable[[np.ndarray], np.ndarray], Cells, list[Finding]]:
-    """Return the chart, the map from points to cell coordinates, the cells, and the findings about pdf and cdf alone."""
-    chart = chart_of(subject.domain, pilot, subject.axis)
-    edges = pilot_edges(chart, chart.from_point(pilot), samples)
-
-    def chart_density(c: np.ndarray) -> np.ndarray:
-        return subject.density(chart.to_point(c)) * chart.jacobian(c)
-
-    with np.errstate(all="ignore"):  # an infinite or undefined density is found, not warned of
-        cells = cells_by_quadrature(chart_density, edges, chart.labels, 0.1 * rounding, BUDGET[subject.precision])
-    findings = [normalisation(subject, cells, rounding)]
-    coordinates = chart.from_point
-    if subject.cdf is not None and len(edges) == 1:
-        mass = _line_masses(subject, chart, edges[0])
-        findings.append(cdf_agreement(mass, cells, subject.precision))
-        error = np.full_like(mass, 8 * subject.roundoff)
-        cells = Cells(edges, cells.labels, mass, error, cells.total, cells.total_error, cells.evaluations)
-    elif subject.cdf is not None:
-        rosenblatt = subject.cdf
-        cells = unit_square_cells(cells)
-
-        def coordinates(x: np.ndarray) -> np.ndarray:
-            return numbers("cdf(x)", call("cdf(x)", rosenblatt, x), (len(x), 2))
-
-    return chart, coordinates, cells, findings
-
-
-def _line_masses(subject: Subject, chart: Chart, edges: np.ndarray) -> np.ndarray:
-    assert subject.cdf is not None
-    with np.errstate(divide="ignore", invalid="ignore"):
-        points = chart.to_point(edges[:, None])
-    ends = {HalfLine: (None, 1.0), RealLine: (0.0, 1.0)}.get(type(subject.domain), (None, None))
-    values = np.empty(len(points))
-    inner = slice(0 if ends[0] is None else 1, None if ends[1] is None else -1)
-    values[inner] = numbers("cdf(x)", call("cdf(x)", subject.cdf, points[inner]), (len(points[inner]),))
-    if ends[0] is not None:
-        values[0], points[0] = ends[0], -np.inf
-    if ends[1] is not None:
-        values[-1], points[-1] = ends[1], np.inf
-    return masses_from_cdf(values, points, subject.atoms)
-
-
-def _shown(chart: Chart, edges: np.ndarray) -> np.ndarray:
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return chart.to_point(edges[:, None])
-
-
-def _figure(cells: Cells, counts: np.ndarray, n: int, edges: tuple[np.ndarray, ...]) -> dict[str, Any]:
-    """Return the data of a plot: shares of at most 64 bins of a line, or the z-scores of a plane's cells."""
-    if counts.ndim == 1:
-        step = -(-counts.size // 64)
-        starts = np.arange(0, counts.size, step)
-        shares = {"expected": np.add.reduceat(cells.mass, starts), "observed": np.add.reduceat(counts, starts) / n}
-        return jsonable({"kind": "bins", "label": "x", "edges": np.append(edges[0][starts], edges[0][-1]), **shares})
-    sigma = np.sqrt(np.maximum(n * cells.mass, 1.0))
-    z = np.round((counts - n * cells.mass) / sigma, 2)
-    return jsonable({"kind": "z-map", "labels": cells.labels, "edges": edges, "z": z})
-
-
-def _goodness(
-    cells: Cells, counts: np.ndarray, hits: dict[float, int], atoms: Mapping[float, float], n: int, alpha: float
-) -> list[Finding]:
-    """Compare counts with masses: axis by axis, coarse and fine, and each atom with its probability."""
-    findings = []
-    if counts.ndim == 1:
-        extra = np.array(list(atoms.values()))
-        observed = np.append(counts, np.array(list(hits.values()), dtype=float))
-        mass, error = np.append(cells.mass, extra), np.append(cells.mass_error, 4e-16 * extra)
-        group = np.append(np.arange(counts.size) * 16 // counts.size, 16 + np.arange(len(extra)))
-        findings.append(kolmogorov("distribution", "x", counts, cells.mass, cells.mass_error, n, alpha, cells.gap))
-        o, m, e = (np.bincount(group, values) for values in (observed, mass, error))
-        findings.append(chi_square("chi-square, coarse", o, m, e, n, alpha))
-        findings.append(chi_square("chi-square, fine", observed, mass, error, n, alpha))
-    else:
-        for axis, label in enumerate(cells.labels):
-            o, m, e = (values.sum(axis=1 - axis) for values in (counts, cells.mass, cells.mass_error))
-            findings.append(kolmogorov(f"distribution of {label}", label, o, m, e, n, alpha, float(m.max())))
-            findings.append(chi_square(f"chi-square in {label}", o, m, e, n, alpha))
-        findings.append(chi_square("chi-square, joint", counts, cells.mass, cells.mass_error, n, alpha))
-    for point, probability in atoms.items():
-        slack = 1e-15 * probability
-        what = f"probability of the atom at {point:g}"
-        findings.append(binomial("atom", what, hits[point], n, probability - slack, probability + slack, alpha))
-    return findings

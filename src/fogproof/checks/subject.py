@@ -29,7 +29,7 @@ class Subject:
     eval: Callable[[np.ndarray], Any] | None = None
     axis: tuple[float, float, float] | None = None
     mean_cosine: float | None = None
-    albedo: float | None = None
+    albedo: float | tuple[float, ...] | None = None
     reference: Callable[[np.ndarray], Reference] | None = None
     precision: Precision = "float64"
 
@@ -114,11 +114,11 @@ def in_domain(domain: Domain, x: np.ndarray, roundoff: float) -> np.ndarray:
     slack = 16 * roundoff
     match domain:
         case UnitSphere():
-            return np.abs(np.sum(x * x, axis=-1) - 1) <= 2 * slack
+            return np.abs(_squared(x) - 1) <= 2 * slack
         case UnitHemisphere():
-            return (np.abs(np.sum(x * x, axis=-1) - 1) <= 2 * slack) & (x[..., 2] >= -slack)
+            return (np.abs(_squared(x) - 1) <= 2 * slack) & (x[..., 2] >= -slack)
         case UnitDisk():
-            return np.sum(x * x, axis=-1) <= 1 + 2 * slack
+            return _squared(x) <= 1 + 2 * slack
         case UnitSquare():
             return np.all((x >= -slack) & (x <= 1 + slack), axis=-1)
         case Discrete(n):
@@ -126,6 +126,10 @@ def in_domain(domain: Domain, x: np.ndarray, roundoff: float) -> np.ndarray:
     low, high = support(domain)
     scale = slack * max((abs(end) for end in (low, high) if np.isfinite(end)), default=0.0)
     return np.isfinite(x) & (x >= low - scale) & (x <= high + scale)
+
+
+def _squared(x: np.ndarray) -> np.ndarray:
+    return np.einsum("...i,...i->...", x, x)
 
 
 def nudged(x: np.ndarray, roundoff: float) -> list[np.ndarray]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -34,6 +34,18 @@ class Resolution:
 
 
 @dataclass(frozen=True)
+class Interval:
+    """Where the true effect lies, but for a probability 1 - confidence."""
+
+    low: float
+    high: float
+    confidence: float
+
+    def __str__(self) -> str:
+        return f"[{self.low:.3g}, {self.high:.3g}] at {self.confidence:.0%}"
+
+
+@dataclass(frozen=True)
 class Finding:
     """One sub-check.
 
@@ -47,6 +59,9 @@ class Finding:
     effect      size of the misfit, in the unit of the resolution's kind
     resolution  what this check could not have missed
     figure      data for a plot, JSON-ready
+    interval    where the true effect lies
+    region      where the misfit is, and in which direction, in words
+    cause       the likely class of error where it is rejected: "normalisation", "wrong measure", "atom", ...
     """
 
     check: str
@@ -59,11 +74,26 @@ class Finding:
     effect: float | None = None
     resolution: Resolution | None = None
     figure: dict[str, Any] | None = None
+    interval: Interval | None = None
+    region: tuple[str, ...] = ()
+    cause: str = ""
+
+    def located(self, region: str) -> Finding:
+        """Return the finding with one more word on where the misfit is."""
+        return replace(self, region=(*self.region, region))
+
+    def because(self, cause: str) -> Finding:
+        """Return the finding with a likely cause."""
+        return replace(self, cause=cause)
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """All findings about one subject, inside one false-alarm probability `alpha`."""
+    """All findings about one subject, inside one false-alarm probability `alpha`.
+
+    cause      the likely class of error, "" if nothing was rejected
+    reproduce  one line that repeats the check
+    """
 
     findings: tuple[Finding, ...]
     alpha: float
@@ -71,6 +101,8 @@ class Verdict:
     seed: int
     seconds: float = 0.0
     settings: dict[str, Any] = field(default_factory=dict)
+    cause: str = ""
+    reproduce: str = ""
 
     @property
     def outcome(self) -> Outcome:
@@ -97,11 +129,18 @@ class Verdict:
 
     def __str__(self) -> str:
         lines = [f"{self.outcome} (alpha {self.alpha:g}, {self.samples} samples, seed {self.seed})"]
+        if self.cause:
+            lines.append(f"  likely: {self.cause}")
         order = {"rejected": 0, "inconclusive": 1, "not rejected": 2}
         for finding in sorted(self.findings, key=lambda f: order[f.outcome]):
             p = "" if finding.p_value is None else f" p = {finding.p_value:.3g}."
             seen = f" {finding.resolution}." if finding.resolution and finding.outcome == "not rejected" else ""
-            lines.append(f"  {finding.outcome:12}  {finding.check}: {finding.message}.{p}{seen}")
+            where = "".join(f" {region};" for region in finding.region).removesuffix(";")
+            where = f"{where}." if where else ""
+            size = f" Effect in {finding.interval}." if finding.interval and finding.outcome == "rejected" else ""
+            lines.append(f"  {finding.outcome:12}  {finding.check}: {finding.message}.{where}{p}{size}{seen}")
+        if self.outcome != "not rejected" and self.reproduce:
+            lines.append(f"  reproduce: {self.reproduce}")
         return "\n".join(lines)
 
     def to_dict(self) -> dict[str, Any]:
@@ -116,6 +155,8 @@ class Verdict:
                 "seconds": self.seconds,
                 "settings": self.settings,
                 "resolution": self.resolution,
+                "cause": self.cause,
+                "reproduce": self.reproduce,
                 "findings": self.findings,
             }
         )

@@ -16,7 +16,10 @@ from fogproof.oracle import answer_text, schema
 @click.command("oracle")
 @click.argument("request", metavar="REQUEST.json|-", required=False)
 @click.option("--schema", "as_schema", is_flag=True, help="Print the JSON Schema of requests and answers instead.")
-def command(request: str | None, as_schema: bool) -> int:
+@click.option(
+    "--rigorous", is_flag=True, help="Prove every answer by ball arithmetic (slow; needs the extra 'rigorous')."
+)
+def command(request: str | None, as_schema: bool, rigorous: bool) -> int:
     """Answer JSON requests with reference values and error bounds, one answer a line.
 
     REQUEST.json holds one JSON object, or one a line; '-' reads lines from stdin and answers each at once.
@@ -31,7 +34,7 @@ def command(request: str | None, as_schema: bool) -> int:
         raise click.UsageError("give a REQUEST.json, '-' for lines on stdin, or --schema")
     bad = False
     for text in _requests(request):
-        reply = jsonable(answer_text(text))
+        reply = jsonable(answer_text(text, rigorous))
         bad = bad or ("error" in reply and "value" not in reply)
         click.echo(json.dumps(reply))
         sys.stdout.flush()  # whoever writes one line and waits must get its answer

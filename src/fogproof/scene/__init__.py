@@ -6,8 +6,9 @@ from fogproof.scene.graded_media import (
     LinearMedium,
     PiecewiseConstantMedium,
 )
-from fogproof.scene.lights import PointLight
+from fogproof.scene.lights import DirectionalLight, Environment, Light, PointLight, SpotLight
 from fogproof.scene.media import AnyMedium, Medium
+from fogproof.scene.occluders import Disk, Occluder, Sphere
 from fogproof.scene.opengl_fog import OpenGLFog
 from fogproof.scene.phase_functions import (
     CornetteShanks,
@@ -27,24 +28,33 @@ from fogproof.scene.phase_functions import (
 from fogproof.scene.procedural import Procedural
 from fogproof.scene.rays import Ray
 from fogproof.scene.scenes import Scattering, Scene
+from fogproof.scene.shapes import Ball, Box, HalfSpace, Shape, Slab, Unbounded
 from fogproof.scene.varying_phase import Ramp, VaryingPhase
 from fogproof.scene.voxel_grid import VoxelGrid
 
 __all__ = [
     "AnisotropicMedium",
     "AnyMedium",
+    "Ball",
+    "Box",
     "CornetteShanks",
+    "DirectionalLight",
+    "Disk",
     "DoubleHenyeyGreenstein",
     "Draine",
+    "Environment",
     "ExponentialMedium",
+    "HalfSpace",
     "Hazy",
     "HenyeyGreenstein",
     "Isotropic",
+    "Light",
     "LinearMedium",
     "Medium",
     "Mie",
     "Mixture",
     "Murky",
+    "Occluder",
     "OpenGLFog",
     "PhaseFunction",
     "PiecewiseConstantMedium",
@@ -56,7 +66,12 @@ __all__ = [
     "Scattering",
     "Scene",
     "Schlick",
+    "Shape",
+    "Slab",
+    "Sphere",
+    "SpotLight",
     "Tabulated",
+    "Unbounded",
     "VaryingPhase",
     "VoxelGrid",
 ]

@@ -1,6 +1,6 @@
 """Scenes and requests from TOML and JSON: pydantic checks the structure, the dataclasses check the values.
 
-`inf` is a TOML number; JSON has none, so the string "inf" stands for it there.
+`inf` is a TOML number; JSON has none, so the strings "inf" and "-inf" stand for it there.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ def _with_infinities(value: Any) -> Any:
         return {key: _with_infinities(item) for key, item in value.items()}
     if isinstance(value, list):
         return [_with_infinities(item) for item in value]
-    return math.inf if value == "inf" else value
+    return {"inf": math.inf, "-inf": -math.inf}.get(value, value) if isinstance(value, str) else value
 
 
 def _complaint(error: Any, data: Any, origin: str) -> InvalidInputError | InvalidValueError:

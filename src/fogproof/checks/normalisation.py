@@ -1,0 +1,130 @@
+"""Integrals that are either right or wrong: of the density, of the cosine under it, of the function that weights are for."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fogproof.checks.charts import Chart
+from fogproof.checks.model import Density, Effort
+from fogproof.checks.quadrature import Leaves, evaluate, refine
+from fogproof.checks.subject import Precision, Subject, call, nudged
+from fogproof.checks.verdict import Finding, Outcome, Resolution
+from fogproof.errors import SubjectError
+
+BUDGET: dict[Precision, int] = {"float64": 1_500_000, "float32": 300_000}
+"""Most evaluations of the pdf for one integral over the domain: in single precision, noise soon makes more of them useless."""
+
+FLOOR: dict[Precision, float] = {"float64": 2e-7, "float32": 2e-5}
+"""An integral this close to its claim is never rejected: quadrature of a black box cannot promise more."""
+
+_COARSE = 1e-3  # an integral known no better says nothing
+_MEASURES = {
+    2 * np.pi: "2 pi: a density of the cosine, or of area, where one of solid angle is claimed",
+    1 / (2 * np.pi): "1/(2 pi): a density of solid angle taken for one of the cosine",
+    4 * np.pi: "4 pi: the normalisation 1/(4 pi) is missing",
+    1 / (4 * np.pi): "1/(4 pi): normalised twice",
+    np.pi: "pi: the normalisation 1/pi is missing",
+    1 / np.pi: "1/pi: normalised twice",
+    2.0: "2: one half of the domain is counted twice",
+    0.5: "1/2: one half of the domain is missing",
+}
+
+
+def effort(subject: Subject, pilot: np.ndarray) -> Effort:
+    """Return how hard to integrate the subject's density: to a tenth of the error that is never rejected."""
+    noise = 8 * subject.roundoff
+    if subject.precision == "float32":
+        noise += 0.25 * rounding_share(subject, pilot)
+    return Effort(0.1 * FLOOR[subject.precision], BUDGET[subject.precision], noise)
+
+
+def rounding_share(subject: Subject, pilot: np.ndarray) -> float:
+    """Return how far the rounding of points can move the pdf: the mean relative change over sampled points."""
+    points = pilot[:2048]
+    if len(points) == 0:
+        return 0.0
+    p = subject.density(points)
+    good = np.isfinite(p) & (p > 0)
+    if not good.any():
+        return 0.0
+    moves = [np.abs(subject.density(moved) / p[good] - 1) for moved in nudged(points[good], subject.roundoff)]
+    change = np.max(moves, axis=0)
+    return float(np.mean(change[np.isfinite(change)])) if np.isfinite(change).any() else 0.0
+
+
+def normalisation(subject: Subject, total: float, error: float, rounding: float, hidden: float) -> Finding:
+    """The pdf and the atoms must sum to 1, up to the bound on the integral and what rounding explains.
+
+    hidden  mass that features like those found may still hold unseen: a misfit of that size is inconclusive
+    """
+    total += sum(subject.atoms.values())
+    slack = error + FLOOR[subject.precision] + rounding
+    misfit = total - 1
+    resolution = Resolution("error of the pdf's integral", slack + hidden, 0.0)
+    what = "the pdf and its atoms sum to" if subject.atoms else "the pdf integrates to"
+    message = f"{what} {total:.9g} +- {slack:.1g}"
+    outcome: Outcome = "not rejected"
+    cause = ""
+    if not np.isfinite(total) or (abs(misfit) <= slack and slack > _COARSE):
+        outcome = "inconclusive"
+        message += "; it is known too coarsely to tell: give a cdf, or a pdf without noise"
+    elif slack < abs(misfit) <= slack + hidden:
+        outcome = "inconclusive"
+        message += f"; features as narrow as those found may hide up to {hidden:.1g} more: draw more samples"
+    elif abs(misfit) > slack:
+        outcome, cause = "rejected", "normalisation"
+        for ratio, words in _MEASURES.items():
+            if abs(total / ratio - 1) < 1e-4 + slack:
+                cause, message = "wrong measure", f"{message}, close to {words}"
+    return Finding("normalisation", outcome, message, effect=misfit, resolution=resolution, cause=cause)
+
+
+def mean_cosine(subject: Subject, chart: Chart, density: Density, leaves: Leaves, work: Effort) -> Finding:
+    """The mean of x . axis under the pdf must be the declared one: forward means forward."""
+    assert subject.mean_cosine is not None
+
+    def integrand(c: np.ndarray) -> np.ndarray:
+        return density(c) * (chart.to_point(c) @ np.asarray(subject.axis))
+
+    finding = _integral("mean cosine", "sign convention", integrand, leaves, work, subject, subject.mean_cosine)
+    if finding.outcome == "rejected" and finding.effect is not None:
+        mean = finding.effect + subject.mean_cosine
+        if abs(mean + subject.mean_cosine) > 1e-3 * abs(subject.mean_cosine) + 1e-6:
+            return finding.because("shape")
+    return finding
+
+
+def albedo(subject: Subject, chart: Chart, leaves: Leaves, work: Effort) -> list[Finding]:
+    """The integral of `eval` over the domain must be the declared albedo, channel by channel."""
+    assert subject.eval is not None
+    assert subject.albedo is not None
+    claimed = np.atleast_1d(np.asarray(subject.albedo, dtype=float))
+    findings = []
+    for channel, value in enumerate(claimed):
+
+        def integrand(c: np.ndarray, channel: int = channel) -> np.ndarray:
+            x = chart.to_point(c)
+            assert subject.eval is not None
+            f = np.asarray(call("eval(x)", subject.eval, x), dtype=np.float64)
+            if f.shape not in ((len(x),), (len(x), len(claimed))):
+                raise SubjectError(f"eval(x) must return ({len(x)},) or one column a channel, got {f.shape}", "eval(x)")
+            return (f if f.ndim == 1 else f[:, channel]) * chart.jacobian(c)
+
+        name = "albedo" if len(claimed) == 1 else f"albedo of channel {channel}"
+        findings.append(_integral(name, "wrong weight", integrand, leaves, work, subject, float(value)))
+    return findings
+
+
+def _integral(
+    name: str, cause: str, integrand: Density, leaves: Leaves, work: Effort, subject: Subject, claimed: float
+) -> Finding:
+    found = evaluate(integrand, leaves.low, leaves.high)
+    found = refine(integrand, found, work.tolerance, work.budget, work.noise)
+    slack = found.total_error + FLOOR[subject.precision] * max(1.0, abs(claimed)) + work.noise
+    effect = found.total - claimed
+    message = f"{name} of the pdf is {found.total:.9g} +- {slack:.1g}, declared {claimed:.9g}"
+    outcome: Outcome = "not rejected" if abs(effect) <= slack else "rejected" if np.isfinite(effect) else "inconclusive"
+    resolution = Resolution(f"error of the {name}", slack, 0.0)
+    return Finding(
+        name, outcome, message, effect=effect, resolution=resolution, cause=cause if outcome == "rejected" else ""
+    )

@@ -1,0 +1,105 @@
+"""Single questions put to a sampler: extreme uniforms, an independent reference, a given cdf, the other precision."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+
+import numpy as np
+
+from fogproof.checks.promises import at_any_atom, inside
+from fogproof.checks.subject import Subject, rounding_spread
+from fogproof.checks.verdict import Finding, Resolution
+from fogproof.errors import SubjectError, shorten
+
+_PRECISION_LOSS = 1e-3  # of probability: single precision may lose digits, but not the distribution
+
+
+def edge_uniforms(subject: Subject) -> Finding:
+    """Uniforms 0, the smallest denormal, 1/2 and the largest below 1 must give points of the domain with a sane density."""
+    kind = np.float32 if subject.precision == "float32" else np.float64
+    edges = np.array([0.0, np.finfo(kind).smallest_subnormal, 0.5, np.nextafter(kind(1), kind(0))], dtype=kind)
+    assert subject.dimensions is not None
+    u = np.array(list(itertools.product(edges, repeat=subject.dimensions)), dtype=kind)
+    name, cause = "edge uniforms", "edge of the uniforms"
+    try:
+        with np.errstate(all="ignore"):
+            draw = subject.draw_at(u)
+            bad = ~inside(subject, draw)
+            within = draw.x[~bad & ~at_any_atom(subject, draw.x)]
+            sane = subject.density(within) >= 0
+    except SubjectError as error:
+        return Finding(name, "rejected", f"with uniforms 0, denormal, 1/2 and 1 - ulp, {error}", cause=cause)
+    if bad.any():
+        i = int(np.argmax(bad))
+        message = f"u = {shorten(u[i])} gives x = {shorten(draw.x[i])}, outside {subject.domain}"
+        return Finding(name, "rejected", message, cause=cause)
+    if not sane.all():
+        i = int(np.argmin(sane))
+        message = f"an edge uniform gives x = {shorten(within[i])}, where the pdf is not >= 0"
+        return Finding(name, "rejected", message, cause=cause)
+    return Finding(
+        name, "not rejected", f"all {len(u)} combinations of 0, denormal, 1/2 and 1 - ulp give points of the domain"
+    )
+
+
+def reference_agreement(subject: Subject, points: np.ndarray) -> Finding:
+    """pdf(x) must equal the independent reference at sampled points, up to the reference's error and rounding."""
+    assert subject.reference is not None
+    reference = subject.reference(points)
+    p = subject.density(points)
+    slack = reference.error + rounding_spread(subject.density, points, subject.roundoff)
+    return _agreement("pdf against the reference", p, np.broadcast_to(reference.value, p.shape), slack, points)
+
+
+def cdf_agreement(claimed: np.ndarray, right: np.ndarray, slack: np.ndarray, points: np.ndarray) -> Finding:
+    """The increments (m,) of a given cdf must equal the integrals of the pdf over the same cells."""
+    return _agreement("cdf against the pdf", claimed, right, slack, points, "the cell that ends at")
+
+
+def _agreement(
+    name: str, claimed: np.ndarray, right: np.ndarray, slack: np.ndarray, points: np.ndarray, at: str = "x ="
+) -> Finding:
+    gap = np.abs(claimed - right)
+    worst = int(np.argmax(gap - slack))
+    effect = float(np.max(gap / np.maximum(np.abs(right), 1e-300), initial=0.0))
+    if not np.all(gap <= slack):
+        message = f"{claimed[worst]:.9g} against {right[worst]:.9g}, at {at} {shorten(points[worst])}"
+        ratio = claimed / np.where(right == 0, np.nan, right)
+        constant = np.nanmax(ratio) - np.nanmin(ratio) < 1e-6 * abs(np.nanmean(ratio))
+        cause = "normalisation" if constant else "wrong formula"
+        return Finding(name, "rejected", message, effect=effect, cause=cause)
+    return Finding(name, "not rejected", f"equal within rounding at {len(right)} places", effect=effect)
+
+
+def precision_agreement(
+    subject: Subject, u: np.ndarray, probability: Callable[[np.ndarray], list[tuple[np.ndarray, np.ndarray]]]
+) -> Finding:
+    """The same single-precision uniforms, given in double precision, must lead to about the same points.
+
+    probability  points -> for each axis the cdf (m,), in which the difference is measured, and what rounding of the points
+                 can change about it (m,)
+    """
+    name = "single against double precision"
+    u = u.astype(np.float32)
+    single, double = subject.draw_at(u), subject.draw_at(u.astype(np.float64))
+    both = ~at_any_atom(subject, single.x) & ~at_any_atom(subject, double.x)
+    both &= inside(subject, single) & inside(subject, double)
+    gaps = []
+    for (a, _), (b, blur) in zip(probability(single.x[both]), probability(double.x[both]), strict=True):
+        gap = np.abs(a - b)
+        gaps.append(np.maximum(np.minimum(gap, 1 - gap) - 2 * blur, 0))
+    gap = np.max(gaps, axis=0, initial=0.0)
+    lost = gap > _PRECISION_LOSS
+    share = float(np.mean(lost)) if len(lost) else 0.0
+    effect = float(np.median(gap)) if len(gap) else 0.0
+    resolution = Resolution("loss of precision, in probability", _PRECISION_LOSS, 0.0)
+    if share > 0.01:
+        i = int(np.flatnonzero(lost)[0])
+        message = f"{share:.1%} of the samples move by more than {_PRECISION_LOSS:g} of probability in single precision"
+        message += (
+            f", u = {shorten(u[both][i])} leads to {shorten(single.x[both][i])} and to {shorten(double.x[both][i])}"
+        )
+        return Finding(name, "rejected", message, effect=effect, resolution=resolution, cause="cancellation")
+    message = f"the median sample moves by {effect:.1g} of probability, {share:.1%} by more than {_PRECISION_LOSS:g}"
+    return Finding(name, "not rejected", message, effect=effect, resolution=resolution)

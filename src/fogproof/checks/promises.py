@@ -1,0 +1,192 @@
+"""What a sampler promises about every single sample, and needs no statistics to check."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from fogproof.checks.subject import Subject, call, in_domain, nudged, rounding_spread
+from fogproof.checks.verdict import Finding
+from fogproof.contracts import Draw
+from fogproof.errors import shorten
+
+_CAUSES = {
+    "domain": "outside the domain",
+    "positive pdf": "claimed hole",
+    "returned pdf": "wrong pdf returned",
+    "returned probability": "wrong pdf returned",
+    "weight": "wrong weight",
+    "event": "wrong event label",
+}
+
+
+def at_any_atom(subject: Subject, x: np.ndarray) -> np.ndarray:
+    """Return (n,) which points are at a declared atom."""
+    hits = list(subject.at_atom(x).values())
+    return np.any(hits, axis=0) if hits else np.zeros(len(x), dtype=bool)
+
+
+def inside(subject: Subject, draw: Draw) -> np.ndarray:
+    """Return which samples are points of the domain or of a declared atom, or given up by the sampler itself."""
+    good = in_domain(subject.domain, draw.x, subject.roundoff)
+    if subject.atoms:
+        good |= at_any_atom(subject, draw.x)
+    return good if draw.valid is None else good | ~draw.valid
+
+
+def _places(subject: Subject, x: np.ndarray) -> dict[float | None, np.ndarray]:
+    """Return which points (n,) are at each atom, by its point, and which are elsewhere, by None."""
+    places: dict[float | None, np.ndarray] = {None: ~at_any_atom(subject, x)}
+    for point, at in subject.at_atom(x).items():
+        places[point] = at
+    return places
+
+
+def usual_labels(subject: Subject, draw: Draw) -> dict[float | None, int]:
+    """Return the usual event label at each atom (by its point) and elsewhere (None), as far as the batch shows them."""
+    if draw.event is None:
+        return {}
+    places = _places(subject, draw.x)
+    labels = {place: draw.event[where] for place, where in places.items()}
+    return {place: Counter(found.tolist()).most_common(1)[0][0] for place, found in labels.items() if len(found)}
+
+
+@dataclass
+class Watch:
+    """Looks at every sample of every batch; keeps one example of each kind of broken promise, and how often it happened.
+
+    labels  the event label that belongs to each atom, and to all other points (None)
+    """
+
+    subject: Subject
+    labels: dict[float | None, int] = field(default_factory=dict)
+    broken: dict[str, tuple[int, str]] = field(default_factory=dict)
+    seen: dict[str, int] = field(default_factory=dict)
+
+    def look(self, draw: Draw) -> tuple[np.ndarray, np.ndarray]:
+        """Check one batch; return (n,) which samples are good points of the continuous part, and (good,) the pdf there."""
+        subject, x = self.subject, draw.x
+        within = inside(subject, draw)
+        self._note("domain", ~within, lambda i: f"x = {shorten(x[i])} is not a point of {subject.domain}", len(x))
+        good = within
+        if subject.atoms:
+            good = good & ~at_any_atom(subject, x)
+        if draw.valid is not None:
+            good = good & draw.valid
+        at = np.flatnonzero(good)
+        points = x if len(at) == len(x) else x[at]
+        p = subject.density(points)
+        zero = ~((p > 0) & (p < np.inf))
+        if zero.any():  # a point on the very edge of the support may fall out of it by rounding
+            near = [subject.density(y) for y in nudged(points[zero], subject.roundoff)]
+            zero[zero] = ~np.any([np.isfinite(q) & (q > 0) for q in near], axis=0)
+        self._note("positive pdf", zero, lambda i: f"pdf is {p[i]:g} at the sampled x = {shorten(points[i])}", len(at))
+        if draw.pdf is not None:
+            self._returned(draw.pdf, x, at, p)
+        if draw.weight is not None and subject.eval is not None:
+            self._weights(draw.weight[at], points)
+        if draw.event is not None and subject.atoms:
+            self._events(draw.event, x)
+        return good, p
+
+    def _returned(self, returned: np.ndarray, x: np.ndarray, at: np.ndarray, p: np.ndarray) -> None:
+        subject = self.subject
+        got = returned[at]
+        differ = ~(np.abs(got - p) <= 64 * subject.roundoff * np.abs(p))
+        if differ.any():
+            slack = rounding_spread(subject.density, x[at[differ]], subject.roundoff)
+            differ[differ] = ~(np.abs(got[differ] - p[differ]) <= slack)
+        self._note(
+            "returned pdf",
+            differ,
+            lambda i: (
+                f"sample returned {got[i]:.9g}, pdf(x) is {p[i]:.9g} at x = {shorten(x[at[i]])}{_ratio(got[i], p[i])}"
+            ),
+            len(at),
+        )
+        for point, hits in subject.at_atom(x).items():
+            values, declared = returned[hits], subject.atoms[point]
+            wrong = ~(np.abs(values - declared) <= 1e7 * subject.roundoff * declared)
+            text = f"at the atom {point:g}, declared {declared:.9g}"
+            self._note("returned probability", wrong, _quote("sample returned", values, text), len(wrong))
+
+    def _weights(self, got: np.ndarray, points: np.ndarray) -> None:
+        subject = self.subject
+
+        def right(y: np.ndarray) -> np.ndarray:
+            assert subject.eval is not None
+            value = np.asarray(call("eval(x)", subject.eval, y), dtype=np.float64)
+            p = subject.density(y)
+            return value / (p if value.ndim == 1 else p[:, None])
+
+        w = right(points)
+        differ = ~(np.abs(got - w) <= 64 * subject.roundoff * np.abs(w))
+        rows = np.flatnonzero(differ if differ.ndim == 1 else differ.any(axis=1))
+        wrong = np.zeros(len(points), dtype=bool)
+        if len(rows):
+            slack = rounding_spread(right, points[rows], subject.roundoff)
+            off = ~(np.abs(got[rows] - w[rows]) <= slack)
+            wrong[rows] = off if off.ndim == 1 else off.any(axis=1)
+        tell = lambda i: f"weight {shorten(got[i])}, eval/pdf is {shorten(w[i])} at x = {shorten(points[i])}"  # noqa: E731
+        self._note("weight", wrong, tell, len(points))
+
+    def _events(self, event: np.ndarray, x: np.ndarray) -> None:
+        places = _places(self.subject, x)
+        for place, where in places.items():
+            if place not in self.labels:
+                continue
+            usual, got = self.labels[place], event[where]
+            wrong = got != usual
+            if place is not None and usual == self.labels.get(None):
+                wrong = np.ones(len(got), dtype=bool)
+            spot = "between the atoms" if place is None else f"at the atom {place:g}"
+            self._note("event", wrong, _quote("label", got, f"{spot}, where {usual} is usual"), len(got))
+
+    def _note(self, name: str, bad: np.ndarray, tell: Callable[[int], str], n: int) -> None:
+        self.seen[name] = self.seen.get(name, 0) + n
+        count = int(np.count_nonzero(bad))
+        if count:
+            before, example = self.broken.get(name, (0, ""))
+            self.broken[name] = (before + count, example or tell(int(np.argmax(bad))))
+
+    def merged(self, other: Watch) -> Watch:
+        """Return what both have seen; the first example stands."""
+        seen = {name: self.seen.get(name, 0) + other.seen.get(name, 0) for name in {**self.seen, **other.seen}}
+        broken = dict(self.broken)
+        for name, (count, example) in other.broken.items():
+            before, first = broken.get(name, (0, ""))
+            broken[name] = (before + count, first or example)
+        return Watch(self.subject, self.labels, broken, seen)
+
+    def findings(self) -> list[Finding]:
+        """Return one finding for each promise that was looked at."""
+        found = []
+        for name, n in self.seen.items():
+            if name in self.broken:
+                count, example = self.broken[name]
+                cause = "wrong measure" if "times pdf" in example else _CAUSES[name]
+                message = f"{count} of {n} samples: {example}"
+                found.append(Finding(name, "rejected", message, effect=count / n, cause=cause))
+            else:
+                found.append(Finding(name, "not rejected", f"kept by all {n} samples"))
+        return found
+
+
+def _quote(what: str, values: np.ndarray, rest: str) -> Callable[[int], str]:
+    return lambda i: f"{what} {values[i]:.9g} {rest}"
+
+
+def _ratio(got: float, right: float) -> str:
+    """Return in words a telling ratio of the returned to the claimed density, if it is one."""
+    for name, factor in (
+        ("2 pi", 2 * np.pi),
+        ("4 pi", 4 * np.pi),
+        ("1/(2 pi)", 0.5 / np.pi),
+        ("1/(4 pi)", 0.25 / np.pi),
+    ):
+        if right > 0 and abs(got / right / factor - 1) < 1e-6:
+            return f" ({name} times pdf)"
+    return ""

@@ -1,0 +1,197 @@
+"""Scans: is there anywhere a place with too many or too few samples?
+
+Every interval of 1, 2, 4, ... cells that starts at a multiple of half its length is an exact binomial test, and each length has
+the same share of the false-alarm probability (a Bonferroni bound over all intervals). Skipped bands, atoms and lost tails are
+found at the length that fits them, with their place.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from fogproof.checks.goodness import MISS, between, binomial_interval, binomial_p, nothing_counted
+from fogproof.checks.grid import Marginal, Plane
+from fogproof.checks.verdict import Finding, Interval, Resolution
+
+_TRIED = 2  # intervals of each length, the most conspicuous ones, whose exact p-value is computed
+
+
+@dataclass(frozen=True)
+class _Place:
+    """One interval or cell: its p-value with the number of its rivals counted, what was seen, and what was expected."""
+
+    p: float
+    first: int
+    last: int
+    observed: int
+    probability: float
+
+    def beats(self, other: _Place, n: int) -> bool:
+        """Whether this place is the more conspicuous one; where both p-values are 0, by how much there is too many or too few."""
+        if self.p != other.p:
+            return self.p < other.p
+        return abs(self.observed - n * self.probability) > abs(other.observed - n * other.probability)
+
+
+def scan(name: str, marginal: Marginal, counts: np.ndarray, alpha: float) -> Finding:
+    """Look for a crowded or empty interval along one axis, counts (m,)."""
+    n = int(counts.sum())
+    if n == 0:
+        return nothing_counted(name, alpha)
+    total = np.concatenate([[0], np.cumsum(counts)])
+    lengths = [1 << k for k in range(max(len(counts).bit_length() - 2, 1))]
+    best = _Place(1.0, 0, len(counts), n, 1.0)
+    for length in lengths:
+        start = np.arange(0, len(counts) - length + 1, max(length // 2, 1))
+        observed = total[start + length] - total[start]
+        low, high = marginal.cdf[start], marginal.cdf[start + length]
+        slack = marginal.doubt(start, start + length) + marginal.blur[start] + marginal.blur[start + length]
+        for i in _conspicuous(observed, n * (high - low), n * slack)[:_TRIED]:
+            mass = float(high[i] - low[i])
+            p = binomial_p(int(observed[i]), n, mass - slack[i], mass + slack[i]) * len(start) * len(lengths)
+            place = _Place(p, int(start[i]), int(start[i]) + length, int(observed[i]), mass)
+            best = place if place.beats(best, n) else best
+    rivals = 2 * len(counts) * len(lengths)
+    resolution = Resolution(f"missing band in {marginal.label}", _smallest_band(n, alpha / rivals), MISS)
+    return _finding(name, best, n, alpha, between(marginal, best.first, best.last), resolution, len(counts), True)
+
+
+def scan_ends(name: str, marginal: Marginal, counts: np.ndarray, low: float, high: float, alpha: float) -> Finding:
+    """Look at both ends of an axis: the samples in its first and last 1, 2, 4, ... cells, and the extreme samples themselves.
+
+    low, high  smallest and largest counted coordinate. With u the cdf there, P(U_min > u) = (1 - u)^n exactly.
+    """
+    n = int(counts.sum())
+    if n == 0:
+        return nothing_counted(name, alpha)
+    at = np.clip(marginal.at(np.array([low, high])), 0, 1)
+    cells = len(counts)
+    lengths = [1 << k for k in range(max(cells.bit_length() - 2, 1))]
+    tries = 2 * (len(lengths) + 1)
+    total = np.concatenate([[0], np.cumsum(counts)])
+    best, what = _Place(1.0, 0, cells, n, 1.0), between(marginal, 0, cells)
+    for first, last in [(0, k) for k in lengths] + [(cells - k, cells) for k in lengths]:
+        mass = float(marginal.cdf[last] - marginal.cdf[first])
+        edge = last if first == 0 else first
+        slack = marginal.error[edge] + marginal.blur[edge]
+        observed = int(total[last] - total[first])
+        p = binomial_p(observed, n, mass - slack, mass + slack) * tries
+        if p < best.p:
+            best, what = _Place(p, first, last, observed, mass), between(marginal, first, last)
+    for share, side, cell in ((float(at[0]), 0, 0), (float(1 - at[1]), -1, cells - 1)):
+        doubt = marginal.error[1 if side == 0 else -2] + marginal.blur[1 if side == 0 else -2]
+        p = tries * _extreme_p(share, doubt, n)
+        if p < best.p:
+            where = f"the extreme sample, beyond which the pdf puts a probability of {share:.3g}"
+            best, what = _Place(p, cell, cell + 1, 0 if n * share > 1 else 1, share), where
+    resolution = Resolution(f"tail missing at an end of {marginal.label}", math.log(2 * tries / alpha) / n, MISS)
+    finding = _finding(name, best, n, alpha, what, resolution, cells, False)
+    if finding.outcome == "rejected" and best.observed == 0:
+        return finding.because("missing tail")
+    return finding
+
+
+def _extreme_p(share: float, doubt: float, n: int) -> float:
+    """Return the two-sided p-value of the smallest of n uniform numbers being `share`, known to within `doubt`."""
+    larger = math.exp(n * math.log1p(-min(max(share - doubt, 0.0), 1 - 1e-16)))
+    smaller = -math.expm1(n * math.log1p(-min(share + doubt, 1 - 1e-16)))
+    return min(1.0, 2 * min(larger, smaller))
+
+
+def scan_plane(name: str, labels: tuple[str, str], plane: Plane, counts: np.ndarray, alpha: float) -> Finding:
+    """Look for a crowded or empty patch: squares of 1, 2, 4, ... cells of the plane, counts (size, size).
+
+    The finer squares are only looked at where the axes are independent, for only then are their probabilities known.
+    """
+    n = int(counts.sum())
+    if n == 0:
+        return nothing_counted(name, alpha)
+    coarse = len(plane.mass)
+    mass, error = plane.mass, plane.error
+    if plane.independent:
+        mass, error = plane.shares[0][:, None] * plane.shares[1], np.zeros(counts.shape)
+    else:
+        counts = blocks(counts, coarse)
+    levels = []
+    while len(counts) >= 4:
+        levels.append((counts, mass, error + plane.blur(len(counts))))
+        counts, mass, error = (blocks(values, len(values) // 2) for values in (counts, mass, error))
+    best, where, size = _Place(1.0, 0, 1, n, 1.0), (0, 0), 1
+    for observed, probability, slack in levels:
+        o, q, e = observed.ravel(), probability.ravel(), slack.ravel()
+        for i in _conspicuous(o, n * q, n * e)[:_TRIED]:
+            p = binomial_p(int(o[i]), n, q[i] - e[i], q[i] + e[i]) * len(o) * len(levels)
+            if p < best.p:
+                best, where, size = (
+                    _Place(p, 0, 1, int(o[i]), float(q[i])),
+                    divmod(int(i), len(observed)),
+                    len(observed),
+                )
+    finest = levels[0][0].size
+    resolution = Resolution(
+        "missing patch (of equal shares of both axes)", 4 * _smallest_band(n, alpha / (finest * len(levels))), MISS
+    )
+    place = " and ".join(
+        f"share {k / size:.4g} to {(k + 1) / size:.4g} of {label}" for k, label in zip(where, labels, strict=True)
+    )
+    return _finding(name, best, n, alpha, place, resolution, finest, True)
+
+
+def blocks(values: np.ndarray, size: int) -> np.ndarray:
+    """Return the sums of square blocks of (n, n) values, (size, size)."""
+    step = len(values) // size
+    return values.reshape(size, step, size, step).sum(axis=(1, 3))
+
+
+def _conspicuous(observed: np.ndarray, expected: np.ndarray, slack: np.ndarray) -> np.ndarray:
+    """Return the indices of the most conspicuous counts, by Poisson deviance, the worst first."""
+    kind = np.clip(observed, expected - slack, expected + slack)
+    kind = np.maximum(kind, 1e-300)
+    ratio = np.maximum(observed, 1e-300) / kind
+    deviance = np.where(observed > 0, observed * np.log(ratio), 0.0) - (observed - kind)
+    if len(deviance) <= _TRIED:
+        return np.argsort(deviance)[::-1]
+    top = np.argpartition(deviance, -_TRIED)[-_TRIED:]
+    return top[np.argsort(deviance[top])[::-1]]
+
+
+def _smallest_band(n: int, p: float) -> float:
+    """Return the mass of a missing band that is found for sure: a third of it at least is an interval, which is then empty."""
+    return 3 * (math.log(2 / p) + 1) / n
+
+
+def _finding(
+    name: str, best: _Place, n: int, alpha: float, where: str, resolution: Resolution, cells: int, atoms: bool
+) -> Finding:
+    p = min(best.p, 1.0)
+    rejected = p <= alpha
+    share = best.observed / n
+    direction = "more" if share > best.probability else "fewer"
+    message = (
+        f"the most conspicuous place is {where}: {best.observed} samples where {n * best.probability:.4g} are expected"
+    )
+    if not rejected:
+        message = f"no place has too many or too few samples; {message}"
+    cause = ""
+    if rejected:
+        cause = "skipped band" if best.observed == 0 else "shape"
+        if atoms and direction == "more" and best.last - best.first == 1 and cells * best.probability < 4:
+            cause = "atom"
+    low, high = binomial_interval(best.observed, n, MISS)
+    return Finding(
+        name,
+        "rejected" if rejected else "not rejected",
+        message,
+        p,
+        alpha,
+        False,
+        best.observed,
+        share - best.probability,
+        resolution,
+        interval=Interval(low - best.probability, high - best.probability, 1 - MISS),
+        region=(where,) if rejected else (),
+        cause=cause,
+    )

@@ -1,0 +1,200 @@
+"""What is remembered of the samples: counts and sums of a fixed size, however many samples there are.
+
+Tallies of different batches merge, and a tally can be written down and read again: a check can be interrupted, spread over machines
+and resumed. Merged in the order of the batches it has the same bits every time.
+"""
+
+from __future__ import annotations
+
+import base64
+import zlib
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from fogproof.checks.features import Ranges, kept
+from fogproof.checks.grid import Grid
+from fogproof.checks.means import Moments
+from fogproof.checks.promises import Watch
+from fogproof.checks.repeats import KEPT, fingerprints
+from fogproof.checks.serial import Successions
+from fogproof.checks.streams import BATCH
+from fogproof.checks.subject import Subject
+from fogproof.contracts import Draw
+
+
+@dataclass(frozen=True)
+class Tally:
+    """Counts of samples.
+
+    drawn    samples drawn, whatever became of them
+    fine     for each axis, (m,) samples of the continuous part in each fine cell
+    plane    (size, size) of them in each cell of the plane, or None
+    extremes (k, 2) their smallest and largest counted coordinates
+    atoms    how often each declared atom was hit
+    serial   products of successive scores
+    prints   fingerprints of the points of the first batches
+    weights  moments of the returned weights, channel by channel
+    strange  points whose density the quadrature does not know
+    watch    what was seen of each promise
+    """
+
+    drawn: int
+    fine: tuple[np.ndarray, ...]
+    plane: np.ndarray | None
+    extremes: np.ndarray
+    atoms: dict[float, int]
+    serial: Successions | None
+    prints: np.ndarray
+    weights: tuple[Moments, ...]
+    strange: np.ndarray
+    watch: Watch = field(repr=False)
+
+    @property
+    def continuous(self) -> int:
+        """How many samples belong to the continuous part."""
+        return int(self.fine[0].sum())
+
+    def merged(self, other: Tally) -> Tally:
+        """Return the tally of both, `self` being of the earlier batches."""
+        if other.drawn == 0:
+            return self
+        if self.drawn == 0:
+            return other
+        plane = None if self.plane is None or other.plane is None else self.plane + other.plane
+        serial = self.serial.merged(other.serial) if self.serial and other.serial else self.serial or other.serial
+        low = np.minimum(self.extremes[:, 0], other.extremes[:, 0])
+        high = np.maximum(self.extremes[:, 1], other.extremes[:, 1])
+        weights = tuple(a.merged(b) for a, b in zip(self.weights, other.weights, strict=True))
+        return Tally(
+            self.drawn + other.drawn,
+            tuple(a + b for a, b in zip(self.fine, other.fine, strict=True)),
+            plane,
+            np.stack([low, high], axis=-1),
+            {point: hits + other.atoms[point] for point, hits in self.atoms.items()},
+            serial,
+            np.concatenate([self.prints, other.prints])[:KEPT],
+            weights,
+            kept(self.strange, other.strange),
+            self.watch.merged(other.watch),
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the JSON-ready form."""
+        serial = self.serial
+        return {
+            "drawn": self.drawn,
+            "fine": [_packed(counts) for counts in self.fine],
+            "plane": None if self.plane is None else _packed(self.plane),
+            "extremes": _packed(self.extremes),
+            "atoms": [[float.hex(point), hits] for point, hits in self.atoms.items()],
+            "serial": None
+            if serial is None
+            else [[_packed(part) for part in (serial.sums, serial.products, serial.squares)], serial.n, serial.pairs],
+            "prints": _packed(self.prints),
+            "weights": [moments.to_dict() for moments in self.weights],
+            "strange": _packed(self.strange),
+            "broken": {name: list(what) for name, what in self.watch.broken.items()},
+            "seen": self.watch.seen,
+        }
+
+    @staticmethod
+    def from_dict(state: dict[str, Any], watch: Watch) -> Tally:
+        """Return the tally that `to_dict` wrote; `watch` supplies the subject."""
+        serial = state["serial"]
+        broken = {name: (count, example) for name, (count, example) in state["broken"].items()}
+        return Tally(
+            state["drawn"],
+            tuple(_unpacked(text) for text in state["fine"]),
+            None if state["plane"] is None else _unpacked(state["plane"]),
+            _unpacked(state["extremes"]),
+            {float.fromhex(point): hits for point, hits in state["atoms"]},
+            None if serial is None else _successions(serial),
+            _unpacked(state["prints"]),
+            tuple(Moments.from_dict(moments) for moments in state["weights"]),
+            _unpacked(state["strange"]),
+            replace(watch, broken=broken, seen=dict(state["seen"])),
+        )
+
+
+@dataclass(frozen=True)
+class Counter:
+    """Counts batches of one subject on one grid.
+
+    count   points -> one counted coordinate (n,) an axis
+    ranges  what densities the quadrature knows in each cell
+    labels  the usual event label of each place
+    scores  for each axis, the middle probability (m,) of each fine cell
+    fingerprinted  whether repetitions mean anything
+    """
+
+    subject: Subject
+    grid: Grid
+    count: Any
+    ranges: Ranges | None
+    labels: dict[float | None, int]
+    scores: tuple[np.ndarray, ...]
+    fingerprinted: bool
+
+    def empty(self) -> Tally:
+        """Return the tally of no samples."""
+        k = len(self.grid.marginals)
+        plane = self.grid.plane
+        return Tally(
+            0,
+            tuple(np.zeros(len(m.mass), dtype=np.int64) for m in self.grid.marginals),
+            None if plane is None else np.zeros((plane.size, plane.size), dtype=np.int64),
+            np.tile([np.inf, -np.inf], (k, 1)),
+            dict.fromkeys(self.subject.atoms, 0),
+            None,
+            np.empty(0, dtype=np.uint64),
+            (),
+            np.empty(0),
+            Watch(self.subject, self.labels),
+        )
+
+    def tally(self, draw: Draw, index: int) -> Tally:
+        """Return the tally of batch number `index`."""
+        subject, grid = self.subject, self.grid
+        watch = Watch(subject, self.labels)
+        good, p = watch.look(draw)
+        points = draw.x if good.all() else draw.x[good]
+        coordinates = self.count(points)
+        cells = [m.lookup(c) for m, c in zip(grid.marginals, coordinates, strict=True)]
+        fine = tuple(np.bincount(c, minlength=len(m.mass)) for m, c in zip(grid.marginals, cells, strict=True))
+        plane = at = None
+        if grid.plane is not None:
+            size = grid.plane.size
+            rows = [r[c] for r, c in zip(grid.plane.rows, cells, strict=True)]
+            plane = np.bincount(rows[0] * size + rows[1], minlength=size * size).reshape(size, size)
+            coarse = len(grid.plane.mass)
+            at = (rows[0] * coarse // size) * coarse + rows[1] * coarse // size
+        strange = np.empty(0)
+        if self.ranges is not None and len(points):
+            strange = points[self.ranges.strange(cells[0] if at is None else at, p)]
+        extremes = np.array([[c.min(), c.max()] if len(c) else [np.inf, -np.inf] for c in coordinates])
+        hits = {point: int(np.count_nonzero(where)) for point, where in subject.at_atom(draw.x).items()}
+        serial = Successions.of([s[c] for s, c in zip(self.scores, cells, strict=True)]) if len(points) else None
+        remembered = self.fingerprinted and index * BATCH < KEPT
+        prints = fingerprints(points) if remembered else np.empty(0, dtype=np.uint64)
+        weights: tuple[Moments, ...] = ()
+        if draw.weight is not None:
+            columns = draw.weight.reshape(len(draw.x), -1).T
+            weights = tuple(Moments.of(np.ascontiguousarray(column)) for column in columns)
+        return Tally(len(draw.x), fine, plane, extremes, hits, serial, prints, weights, strange[:4096], watch)
+
+
+def _successions(state: list[Any]) -> Successions:
+    sums, products, squares = (_unpacked(part) for part in state[0])
+    return Successions(sums, products, squares, state[1], state[2])
+
+
+def _packed(array: np.ndarray) -> dict[str, Any]:
+    data = base64.b64encode(zlib.compress(np.ascontiguousarray(array).tobytes(), 1)).decode()
+    return {"dtype": str(array.dtype), "shape": list(array.shape), "data": data}
+
+
+def _unpacked(packed: dict[str, Any]) -> np.ndarray:
+    data = zlib.decompress(base64.b64decode(packed["data"]))
+    return np.frombuffer(data, dtype=packed["dtype"]).reshape(packed["shape"]).copy()
