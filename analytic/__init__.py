@@ -46,6 +46,7 @@ from fogproof.analytic.slab import (
     slab_reflectance,
     slab_transmittance,
 )
+from fogproof.analytic.slab_brdf import slab_brdf
 from fogproof.analytic.slab_orders import slab_reflectance_orders, slab_transmittance_orders
 from fogproof.analytic.transmittance import optical_thickness, transmittance
 from fogproof.analytic.varying_phase import phase_pdf_at
@@ -98,6 +99,7 @@ __all__ = [
     "single_scattering",
     "single_scattering_second_moment",
     "single_scattering_variance",
+    "slab_brdf",
     "sky_colour",
     "slab_diffuse_reflectance",
     "slab_diffuse_transmittance",
