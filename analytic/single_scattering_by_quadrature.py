@@ -3,18 +3,18 @@
     L = int T(camera, x) sigma_s(x) f_p(x, mu) E(x) dt,    E = I T(x, light) / r^2, or E_0 T(x, outside) for parallel light
 
 For a light with a position, t = h sinh(s) takes the 1/r^2 away as in the airlight integral. The ray is cut where the
-medium, a cone, a shadow or the phase function breaks. A panel of 16 Gauss-Legendre nodes is compared with its halves,
-which replace it; the difference is the error estimate, and where it is too large the halves are halved again. The error of
-each optical thickness is carried along. Features smaller than the panels that no node meets cannot be seen.
+medium, a cone, a shadow or the phase function breaks, and integrated by `adaptive_panels`. The error of each optical
+thickness is carried along. Features smaller than the panels that no node meets cannot be seen.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
+from fogproof.analytic.adaptive_panels import PANELS, Look, integrate_panels
 from fogproof.analytic.airlight_phase import airlight_phase
 from fogproof.analytic.breakpoints import breakpoints
 from fogproof.analytic.coefficients import coefficients
@@ -22,7 +22,6 @@ from fogproof.analytic.convex_shapes import chord, contains, through
 from fogproof.analytic.error_free import EPS, TINY
 from fogproof.analytic.flat_rays import FlatRays
 from fogproof.analytic.light_cone import edges, intensity_at, lit_by_cone
-from fogproof.analytic.panel_rule import NODES, WEIGHTS
 from fogproof.analytic.phase_functions import phase_pdf
 from fogproof.analytic.ray_and_light import Placement, meets_light, place
 from fogproof.analytic.shadows import shadow_of_direction, shadow_of_point
@@ -36,16 +35,6 @@ from fogproof.scene.shapes import Shape, Unbounded
 
 METHOD = "adaptive Gauss-Legendre 16 along the ray, optical thickness at each node"
 SOURCE = "nested quadrature of the rendering equation, one order of scattering"
-
-TOLERANCE = 1e-11
-"""Relative error aimed at for each ray."""
-
-ROUNDS = 40
-PANELS = 1024
-"""Most panels of one ray; what is left undone by then stands in the error."""
-
-BLOCK = 2048
-"""Panels evaluated at a time."""
 
 Aimed = PointLight | SpotLight | DirectionalLight
 
@@ -66,21 +55,6 @@ class Pieces(NamedTuple):
     weight: np.ndarray
 
 
-class Panels(NamedTuple):
-    """Parts of pieces, from `low` over `width` of their variable, (p,), with value and errors, (p, channels)."""
-
-    piece: np.ndarray
-    low: np.ndarray
-    width: np.ndarray
-    value: np.ndarray
-    noise: np.ndarray
-    off: np.ndarray
-
-
-Look = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
-"""(pieces (p,), places in their variable (p, nodes)) -> integrand and its error, (p, nodes, channels)."""
-
-
 def single_scattering_by_quadrature(
     medium: AnyMedium, ray: FlatRays, light: Aimed, shape: Shape, occluders: Sequence[Occluder]
 ) -> tuple[np.ndarray, np.ndarray, str, str]:
@@ -89,7 +63,7 @@ def single_scattering_by_quadrature(
     with np.errstate(all="ignore"):
         pieces = _pieces(medium, ray, light, shape, occluders, where)
         look = _integrand(medium, ray, light, shape, where, pieces)
-        value, error = _integrate(pieces, look, len(ray.length))
+        value, error = integrate_panels(pieces.span, look, pieces.ray, pieces.weight, len(ray.length))
         scale = np.atleast_1d(strength(light))
         error = np.where(scale > 0, scale * error + 4 * EPS * scale * value + TINY, 0.0)
         value = np.where(scale > 0, scale * value, 0.0)
@@ -111,6 +85,10 @@ def _pieces(
         raise UnsupportedError("an endless ray through a medium without end: give the ray a length", "ray")
     start, end = breaks[:, :1], breaks[:, -1:]
     places, shadows = [breaks], []
+    detail = getattr(medium, "detail", np.inf)
+    if detail < np.inf:  # panels no wider than what a user's function says it has in store
+        steps = min(int(np.ceil(np.max(end - start, initial=0.0) / detail)), PANELS)
+        places.append(start + detail * np.arange(1, steps))
     for occluder in occluders:
         if isinstance(light, DirectionalLight):
             shadows.append(shadow_of_direction(occluder, ray, light.direction))
@@ -227,49 +205,6 @@ def _integrand(
         return value.reshape(*u.shape, channels), error.reshape(*u.shape, channels)
 
     return look
-
-
-def _evaluate(look: Look, piece: np.ndarray, low: np.ndarray, width: np.ndarray) -> Panels:
-    found = []
-    for i in range(0, max(len(piece), 1), BLOCK):
-        block = slice(i, i + BLOCK)
-        f, noise = look(piece[block], low[block, None] + width[block, None] * NODES)
-        scale = width[block, None]
-        found.append((scale * np.einsum("k,pkc->pc", WEIGHTS, f), scale * np.einsum("k,pkc->pc", WEIGHTS, noise)))
-    value, noise = (np.concatenate(x) for x in zip(*found, strict=True))
-    return Panels(piece, low, width, value, noise, np.zeros_like(value))
-
-
-def _integrate(pieces: Pieces, look: Look, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return value and error of each ray, (count, channels)."""
-    panels = _evaluate(look, np.arange(len(pieces.ray)), np.zeros(len(pieces.ray)), pieces.span)
-    done = Panels(*(x[:0] for x in panels))
-    totals = np.zeros((count, panels.value.shape[1]))
-    for _ in range(ROUNDS):
-        if not len(panels.piece):
-            break
-        half = panels.width / 2
-        left, right = (
-            _evaluate(look, panels.piece, panels.low, half),
-            _evaluate(look, panels.piece, panels.low + half, half),
-        )
-        off = np.abs(left.value + right.value - panels.value) / 2
-        both = Panels(*(np.concatenate(x) for x in zip(left._replace(off=off), right._replace(off=off), strict=True)))
-        done = Panels(*(np.concatenate(x) for x in zip(done, both, strict=True)))
-        rays = pieces.ray[done.piece]
-        number = np.bincount(rays, minlength=count)
-        totals = np.zeros_like(totals)
-        np.add.at(totals, rays, done.value)
-        share = TOLERANCE / number[rays][:, None] * totals[rays]
-        bad = (done.off > np.maximum(share, 4 * EPS * done.value)).any(axis=1)
-        bad &= (number[rays] < PANELS) & (done.width > 1e-13 * (done.low + done.width))
-        panels, done = Panels(*(x[bad] for x in done)), Panels(*(x[~bad] for x in done))
-    panels = Panels(*(np.concatenate(x) for x in zip(done, panels, strict=True)))
-    weight = pieces.weight[panels.piece][:, None]
-    value, error = np.zeros_like(totals), np.zeros_like(totals)
-    np.add.at(value, pieces.ray[panels.piece], weight * panels.value)
-    np.add.at(error, pieces.ray[panels.piece], panels.off + panels.noise + (1 - weight) * panels.value)
-    return value, error + 64 * EPS * value
 
 
 def _at_the_light(

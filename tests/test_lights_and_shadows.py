@@ -2,6 +2,7 @@
 the truth asks every point whether it is lit (`lit_truth`), and limits of one light are another.
 """
 
+import json
 import math
 
 import mpmath as mp
@@ -14,6 +15,7 @@ from media_truth import within
 
 from fogproof.analytic import single_scattering
 from fogproof.errors import InvalidValueError, UnsupportedError
+from fogproof.oracle import answer_text
 from fogproof.scene import HenyeyGreenstein, Isotropic, LinearMedium, Medium, PointLight, Ray, Rayleigh, Tabulated
 from fogproof.scene.lights import DirectionalLight, Environment, SpotLight
 from fogproof.scene.occluders import Disk, Sphere
@@ -152,6 +154,22 @@ def test_unbounded_media_get_nothing_from_outside():
         reference = single_scattering(MEDIUM, RAY, light)
         assert np.all(reference.value == 0)
         assert np.all(reference.error == 0)
+
+
+def test_shapes_and_lights_come_from_requests():
+    request = {
+        "quantity": "single_scattering",
+        "medium": {"sigma_a": 0.1, "sigma_s": 0.3},
+        "ray": {"origin": [0, 0, -1], "direction": [0, 0, -1], "length": "inf"},
+        "light": {"kind": "directional", "direction": [0, 0.6, -0.8], "irradiance": 2},
+        "shape": {"kind": "half-space", "point": [0, 0, 0], "normal": [0, 0, 1]},
+        "occluders": [{"kind": "sphere", "center": [0, 3, 1], "radius": 0.1}],
+    }
+    answer = answer_text(json.dumps(request))
+    sigma_t, f = 0.4, 1 / (4 * math.pi)  # exp(-sigma t) on the way out, exp(-sigma (1 + t)/0.8) on the way in
+    assert answer["value"] == pytest.approx(
+        0.3 * 2 * f * math.exp(-sigma_t / 0.8) / (sigma_t * (1 + 1 / 0.8)), rel=1e-13
+    )
 
 
 def expint2(x):

@@ -19,6 +19,7 @@ from fogproof.scene.lights import LightField
 from fogproof.scene.media import AnyMediumField
 from fogproof.scene.occluders import OccluderField
 from fogproof.scene.phase_functions import PhaseFunctionField
+from fogproof.scene.shapes import ShapeField, Unbounded
 from fogproof.validate import Channels
 
 _FORWARD = "mu is the forward cosine: propagation direction in . propagation direction out"
@@ -86,7 +87,13 @@ def quantities() -> dict[str, Quantity]:
         ),
         "single_scattering": Quantity(
             analytic.single_scattering,
-            {**scene, "light": LightField, "occluders": (tuple[OccluderField, ...], ()), **how},
+            {
+                **scene,
+                "light": LightField,
+                "occluders": (tuple[OccluderField, ...], ()),
+                "shape": (ShapeField, Unbounded()),
+                **how,
+            },
             radiance,
             "airlight alone, without the background; the light's intensity is in W/sr; " + _FORWARD,
         ),

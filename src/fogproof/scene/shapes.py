@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 from fogproof.errors import InvalidValueError
+from fogproof.scene.kinds import ByKind
 from fogproof.scene.lights import one_direction, one_point
 from fogproof.validate import number
 
@@ -86,3 +88,13 @@ class Box:
 
 
 Shape = Unbounded | HalfSpace | Slab | Ball | Box
+SHAPES: dict[str, type[Shape]] = {
+    "unbounded": Unbounded,
+    "half-space": HalfSpace,
+    "slab": Slab,
+    "ball": Ball,
+    "box": Box,
+}
+"""The `kind` of each shape in files and requests."""
+
+ShapeField = Annotated[Shape, ByKind(SHAPES)]
