@@ -121,7 +121,9 @@ class MarchedTransmittance:
         march = RayMarch(self.medium, self.ray, self.step, self.rule)
         value = np.exp(-march.depths[-1])
         value = value if self.medium.channels else value[0]
-        return Draws(np.broadcast_to(value, (n, *np.shape(value))), np.full(n, float(np.count_nonzero(np.diff(march.edges)))))
+        return Draws(
+            np.broadcast_to(value, (n, *np.shape(value))), np.full(n, float(np.count_nonzero(np.diff(march.edges))))
+        )
 
 
 @dataclass(frozen=True, eq=False)

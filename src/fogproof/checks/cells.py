@@ -52,10 +52,11 @@ class Cells:
         return np.bincount(flat, minlength=self.mass.size).reshape(self.mass.shape)
 
 
-def pilot_edges(chart: Chart, pilot: np.ndarray, samples: int) -> tuple[np.ndarray, ...]:
+def pilot_edges(chart: Chart, pilot: np.ndarray, samples: int, breaks: np.ndarray) -> tuple[np.ndarray, ...]:
     """Return edges at quantiles of the pilot's (m, k) coordinates: about equal counts, never from the tested sample.
 
-    A few edges at equal distances are added: they see what the pilot of a wrong sampler never visits.
+    A few edges at equal distances are added: they see what the pilot of a wrong sampler never visits. `breaks` (b, k) are edges
+    too, so that no cell has a jump inside.
     """
     dimensions = len(chart.low)
     quantiles, uniform = np.array(_QUANTILES[dimensions]), np.array(_UNIFORM[dimensions])
@@ -67,7 +68,8 @@ def pilot_edges(chart: Chart, pilot: np.ndarray, samples: int) -> tuple[np.ndarr
         shares = np.arange(1, quantiles[axis]) / quantiles[axis]
         inner = np.quantile(pilot[:, axis], shares) if len(pilot) else np.empty(0)
         inner = inner[(inner > low) & (inner < high)]
-        edges.append(np.unique(np.concatenate([inner, np.linspace(low, high, uniform[axis] + 1)])))
+        jumps = breaks[:, axis][(breaks[:, axis] > low) & (breaks[:, axis] < high)]
+        edges.append(np.unique(np.concatenate([inner, jumps, np.linspace(low, high, uniform[axis] + 1)])))
     return tuple(edges)
 
 

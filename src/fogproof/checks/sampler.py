@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, get_args
 
@@ -53,6 +53,7 @@ def check_sampler(
     mean_cosine: float | None = None,
     albedo: float | None = None,
     reference: Callable[[np.ndarray], Reference] | None = None,
+    breaks: Sequence[float] = (),
     precision: Precision = "float64",
     resolution: float | None = None,
     samples: int = 1_000_000,
@@ -70,6 +71,7 @@ def check_sampler(
     axis         unit vector; `mean_cosine` is the declared mean of x . axis on the sphere
     albedo       the integral of `eval` over the domain
     reference    x -> `Reference`: what pdf(x) should be, from an independent source
+    breaks       points of a one-dimensional domain where the density jumps: quadrature has to be told, it may miss a jump
     precision    "float32" if the sampler computes in single precision: uniforms and tolerances follow
     resolution   Kolmogorov distance to detect: fewer samples than `samples` are drawn where they suffice for it
     samples      most samples to draw
@@ -81,7 +83,7 @@ def check_sampler(
     subject = Subject(
         sample, pdf, domain, dimensions, atoms, cdf, eval, axis, mean_cosine, albedo, reference, precision
     )
-    _validate(subject, samples, alpha, resolution)
+    _validate(subject, samples, alpha, resolution, breaks)
     seed = fresh_seed() if seed is None else seed
     tests = (3 if _is_line(domain) else 5) + len(atoms)
     share = alpha / tests
@@ -98,7 +100,7 @@ def check_sampler(
         edges_shown = cells.edges
         findings.append(normalisation(subject, cells, rounding))
     else:
-        chart, coordinates, cells, chart_cells, more = _continuous(subject, pilot, samples, rounding)
+        chart, coordinates, cells, chart_cells, more = _continuous(subject, pilot, samples, rounding, breaks)
         findings += more
         edges_shown = cells.edges if len(cells.edges) > 1 else (_shown(chart, cells.edges[0]),)
         if axis is not None and mean_cosine is not None:
@@ -128,7 +130,7 @@ def _is_line(domain: Domain) -> bool:
     return isinstance(domain, (Interval, HalfLine, RealLine, Discrete))
 
 
-def _validate(subject: Subject, samples: int, alpha: float, resolution: float | None) -> None:
+def _validate(subject: Subject, samples: int, alpha: float, resolution: float | None, breaks: Sequence[float]) -> None:
     if not isinstance(subject.domain, get_args(Domain)):
         known = ", ".join(kind.__name__ for kind in get_args(Domain))
         raise InvalidValueError("domain", f"must be one of {known}", subject.domain)
@@ -140,8 +142,9 @@ def _validate(subject: Subject, samples: int, alpha: float, resolution: float | 
     number("samples", samples, "must be at least 100", 100)
     if resolution is not None:
         number("resolution", resolution, "must lie in (0, 1)", 0, 1, open_ends=True)
-    if subject.atoms and not isinstance(subject.domain, (Interval, HalfLine, RealLine)):
-        raise InvalidValueError("atoms", "need a domain of one dimension", subject.domain)
+    for name, given in (("atoms", subject.atoms), ("breaks", breaks)):
+        if len(given) and not isinstance(subject.domain, (Interval, HalfLine, RealLine)):
+            raise InvalidValueError(name, "need a domain of one dimension", subject.domain)
     for point, probability in subject.atoms.items():
         number(f"atoms[{point!r}]", probability, "must be a probability in [0, 1]", 0, 1)
     if (subject.mean_cosine is None) != (subject.axis is None) and subject.mean_cosine is not None:
@@ -177,14 +180,15 @@ def _discrete(subject: Subject) -> tuple[Callable[[np.ndarray], np.ndarray], Cel
 
 
 def _continuous(
-    subject: Subject, pilot: np.ndarray, samples: int, rounding: float
+    subject: Subject, pilot: np.ndarray, samples: int, rounding: float, breaks: Sequence[float]
 ) -> tuple[Chart, Callable[[np.ndarray], np.ndarray], Cells, Cells, list[Finding]]:
     """Return the chart, the map from points to cell coordinates, the cells, and the findings about pdf and cdf alone.
 
     The cells come twice: those that samples are counted in, and those of the chart, over which functions are integrated.
     """
     chart = chart_of(subject.domain, pilot, subject.axis)
-    edges = pilot_edges(chart, chart.from_point(pilot), samples)
+    jumps = chart.from_point(np.array(breaks, dtype=float)) if len(breaks) else np.empty((0, len(chart.low)))
+    edges = pilot_edges(chart, chart.from_point(pilot), samples, jumps)
 
     def chart_density(c: np.ndarray) -> np.ndarray:
         return subject.density(chart.to_point(c)) * chart.jacobian(c)
