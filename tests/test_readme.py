@@ -38,3 +38,8 @@ def test_every_command_is_listed():
 @pytest.mark.parametrize("path", sorted((ROOT / "scenes").glob("*.toml")), ids=lambda path: path.name)
 def test_every_example_scene_can_be_planned(path):
     assert plan(read_scene(path)).solver
+
+
+def test_the_third_example_tracks(capsys):
+    exec(compile(EXAMPLES[2], "README.md", "exec"), {})
+    assert "look-ups; the oracle says" in capsys.readouterr().out

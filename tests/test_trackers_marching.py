@@ -78,7 +78,14 @@ def test_the_free_path_samples_the_steps(name: str, rule: Any) -> None:
         return np.where(t >= 1.5, 1.0, 1 - inside)
 
     verdict = check_sampler(
-        sampler.sample, sampler.pdf, sampler.domain, dimensions=1, atoms=sampler.atoms, cdf=cdf, samples=100_000
+        sampler.sample,
+        sampler.pdf,
+        sampler.domain,
+        dimensions=1,
+        atoms=sampler.atoms,
+        cdf=cdf,
+        breaks=RayMarch(MEDIA[name], OBLIQUE, 0.25, rule).edges,
+        samples=100_000,
     )
     assert verdict.outcome == "not rejected", str(verdict)
 

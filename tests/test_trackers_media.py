@@ -5,7 +5,7 @@ from __future__ import annotations
 import numba
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from tracker_media import MEDIA, OBLIQUE, unit, voxels, waves
 
@@ -65,6 +65,7 @@ def test_extremes_hold_along_the_ray(name: str) -> None:
 
 
 @pytest.mark.parametrize("interpolation", ["nearest", "trilinear"])
+@settings(deadline=None)
 @given(block=st.integers(1, 7), seed=st.integers(0, 2**32))
 def test_blocks_bound_the_grid_everywhere(interpolation: str, block: int, seed: int) -> None:
     grid = voxels((5, 4, 7), interpolation, seed)

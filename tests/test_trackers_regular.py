@@ -8,8 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tracker_media import OBLIQUE, rays, unit, voxels
 
-from fogproof import check_sampler
+from fogproof import UnitSquare, check_sampler
 from fogproof.analytic import optical_thickness, transmittance
+from fogproof.analytic.breakpoints import breakpoints
 from fogproof.errors import FogproofError, InvalidValueError, UnsupportedError
 from fogproof.estimators import RegularFreePath, RegularTransmittance, regular_tracking
 from fogproof.scene import LinearMedium, Ray, VoxelGrid
@@ -24,7 +25,7 @@ def dyadic(interpolation: str, seed: int = 0) -> VoxelGrid:
 
 
 @pytest.mark.parametrize("interpolation", INTERPOLATIONS)
-@settings(max_examples=300)
+@settings(max_examples=300, deadline=None)
 @given(ray=rays(), seed=st.integers(0, 10))
 def test_the_optical_depth_is_the_oracles(interpolation: str, ray: Ray, seed: int) -> None:
     grid = dyadic(interpolation, seed)
@@ -35,7 +36,7 @@ def test_the_optical_depth_is_the_oracles(interpolation: str, ray: Ray, seed: in
 
 
 @pytest.mark.parametrize("interpolation", INTERPOLATIONS)
-@settings(max_examples=100)
+@settings(max_examples=100, deadline=None)
 @given(ray=rays(), seed=st.integers(0, 10))
 def test_on_grids_of_any_size(interpolation: str, ray: Ray, seed: int) -> None:
     """The planes are rounded numbers here; a ray within rounding of one may see either side, so it is turned a little."""
@@ -117,9 +118,27 @@ def test_the_free_path_samples_its_density(interpolation: str) -> None:
         return np.where(t >= 1.5, 1.0, 1 - through.value)
 
     verdict = check_sampler(
-        sampler.sample, sampler.pdf, sampler.domain, dimensions=1, atoms=sampler.atoms, cdf=cdf, samples=200_000
+        sampler.sample,
+        sampler.pdf,
+        sampler.domain,
+        dimensions=1,
+        atoms=sampler.atoms,
+        cdf=cdf,
+        breaks=breakpoints(sampler.medium, OBLIQUE)[0],
+        samples=200_000,
     )
     assert verdict.outcome == "not rejected", str(verdict)
+
+
+def test_quadrature_that_is_told_of_jumps_misses_none() -> None:
+    """A jump between the outermost node and the end of a cell is invisible; untold, a third of these runs reject."""
+    sampler = RegularFreePath(voxels((8, 9, 7), "nearest"), OBLIQUE)
+    told = {"dimensions": 1, "atoms": sampler.atoms, "breaks": breakpoints(sampler.medium, OBLIQUE)[0]}
+    for _ in range(12):
+        verdict = check_sampler(sampler.sample, sampler.pdf, sampler.domain, samples=20_000, **told)
+        assert verdict.outcome == "not rejected", str(verdict)
+    with pytest.raises(InvalidValueError, match="breaks"):
+        check_sampler(lambda u: u, lambda x: np.ones(len(x)), UnitSquare(), dimensions=2, breaks=[0.5])
 
 
 def test_channels_and_batches() -> None:

@@ -11,6 +11,7 @@ from fogproof.catalogue import (
     free_paths,
     mitsuba,
     single_scattering,
+    trackers,
     transmittance_and_fog,
 )
 from fogproof.catalogue.cases import Altered, Case, EstimatorCase, SamplerCase, Twin
@@ -21,5 +22,5 @@ __all__ = ["Altered", "Case", "EstimatorCase", "SamplerCase", "Twin", "all_cases
 @cache
 def all_cases() -> tuple[Case, ...]:
     """Return every case, in the order in which it is reported."""
-    groups = (directions, cosines, free_paths, equiangular, transmittance_and_fog, single_scattering, mitsuba)
+    groups = (directions, cosines, free_paths, equiangular, transmittance_and_fog, trackers, single_scattering, mitsuba)
     return tuple(case for group in groups for case in group.cases())
