@@ -19,7 +19,7 @@ from fogproof.analytic.error_free import two_prod, two_sum
 Pair = tuple[np.ndarray, np.ndarray]
 
 SMALL = 1e-100
-"""Components of positions, directions and gradients below this count as 0, so that no product of two underflows."""
+"""Components of vectors in a dot product below this count as 0, so that no product of two underflows."""
 
 UNIT = 2.0**-100
 """A generous bound of the relative error of a short chain of these operations; nothing the oracle says rests on less."""

@@ -134,14 +134,14 @@ def segments(medium: CellMedium, ray: Ray) -> Iterator[tuple[slice, Segments]]:
 
 def _axes(medium: CellMedium, origin: np.ndarray, direction: np.ndarray) -> list[Axis]:
     if isinstance(medium, PiecewiseConstantMedium):
-        normal, places = [Fraction(x) for x in dd.flushed(medium.axis)], dd.flushed(origin)
+        normal = [Fraction(x) for x in dd.flushed(medium.axis)]
         layers = Axis(dd.dot(medium.axis, origin), dd.dot(medium.axis, direction), medium.boundaries)
 
         def height(ray: int) -> Fraction:
-            return sum((a * Fraction(x) for a, x in zip(normal, places[ray], strict=True)), Fraction(0))
+            return sum((a * Fraction(x) for a, x in zip(normal, origin[ray], strict=True)), Fraction(0))
 
         return [_settled(layers, height)]
-    origin, direction = dd.flushed(origin), dd.flushed(direction)
+    direction = dd.flushed(direction)
     axes = []
     for i, n in enumerate(medium.sigma_t.shape[:3]):
         size = dd.add(dd.pair(medium.upper[i]), dd.pair(-medium.lower[i]))

@@ -64,7 +64,7 @@ def pieces(medium: AnyMedium, origin: np.ndarray, direction: np.ndarray, length:
         raise UnsupportedError("nothing can be proven about a user's function: ask without rigorous=True", "medium")
     o, w = vector(origin), vector(direction)
     if isinstance(medium, PiecewiseConstantMedium | VoxelGrid):
-        return _cells(medium, o, w, s)
+        return _cells(medium, [rational(x) for x in origin], w, s)
     source = rational(medium.albedo), rational(medium.emission)
     match medium:
         case LinearMedium():

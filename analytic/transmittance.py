@@ -34,8 +34,8 @@ def optical_thickness(medium: AnyMedium, ray: Ray, *, rigorous: bool = False) ->
 
     rigorous  prove the result by ball arithmetic (any medium but a `Procedural` one; slow)
 
-    Positions are origin + t direction, with the direction as stored; in heterogeneous media components below 1e-100
-    count as 0. An empty medium has tau = 0 on every ray, the infinite one included.
+    Positions are origin + t direction, with the direction as stored; in heterogeneous media components of directions
+    and gradients below 1e-100 count as 0. An empty medium has tau = 0 on every ray, the infinite one included.
     Error: 1 EPS relative for a homogeneous medium; see the method named in the result for the others.
     """
     if rigorous:

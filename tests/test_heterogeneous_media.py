@@ -132,6 +132,8 @@ def test_voxels_from_far_away(interpolation, distance):
         ((0.5, -1.0, 0.5), (0.0, 1.0, 0.0), 6.0),
         ((0.5, 3.0, 0.5), (0.0, -1.0, 0.0), 6.0),
         ((0.5, 3.0, 0.5), (0.0, 1.0, 0.0), 0.0),  # behind the camera
+        ((-1.0, 1.0, -1e-200), (1.0, 0.0, 0.0), 0.0),  # hardly outside
+        ((-1.0, 1.0, 1e-200), (1.0, 0.0, 0.0), 4.0),  # hardly inside
     ],
 )
 def test_voxels_along_their_faces(origin, direction, tau):
@@ -142,6 +144,7 @@ def test_voxels_along_their_faces(origin, direction, tau):
 
 def test_components_below_1e_100_count_as_zero():
     ray, exact_ray = Ray((0, 0, 0), (1, 1e-150, 0)), Ray((0, 0, 0), (1, 0, 0))
+    assert optical_thickness(LinearMedium(0.0, (1e-150, 0, 0)), exact_ray).value == 0
     for medium in (LinearMedium(0.0, (0, 1, 0)), VoxelGrid(np.ones((2, 2, 2)), (-1, 0, 0), (1, 1, 1), "nearest")):
         assert optical_thickness(medium, ray).value == optical_thickness(medium, exact_ray).value
 
