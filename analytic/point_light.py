@@ -41,9 +41,9 @@ def point_light(
     method: Method,
 ) -> Result:
     """Return the radiance (n, channels) along the flattened rays, its error, method and source."""
-    where = place(ray, light.position)
     sigma, sigma_low = (np.atleast_1d(x) for x in two_sum(medium.sigma_a, medium.sigma_s))
     with np.errstate(all="ignore"):
+        where = place(ray, light.position)
         inside = chord(shape, ray)
         segments, owner, weight = _lit(where, inside, light, _shadows(occluders, ray, light))
         pieces = _with_channels(segments, sigma, sigma_low)

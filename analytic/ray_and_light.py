@@ -64,20 +64,27 @@ def place(ray: Ray | FlatRays, position: tuple[float, float, float]) -> Placemen
     origin, direction = (np.ascontiguousarray(x.reshape(-1, 3).T) for x in (ray.origin, ray.direction))
     length = ray.length.ravel()
     q, q_low = sum_pair(light, -origin)
-    halves, d = split(q), split(direction)
-    excess = 0.5 * (
-        (one := dot(d, np.zeros_like(direction), d))[0] - 1 + one[1]
-    )  # |d| - 1 of a direction off by rounding
-    along, along_low = dot(halves, q_low, d)
+    largest = np.max(np.abs(q), axis=0)
+    extreme = bool(np.any((largest > 1e140) | ((largest < 1e-140) & (largest > 0))))
+    exponent = np.frexp(largest)[1] if extreme else np.zeros(1, int)
+    unit, unit_low = (np.ldexp(q, -exponent), np.ldexp(q_low, -exponent)) if extreme else (q, q_low)
+
+    halves, d = split(unit), split(direction)
+    square_d, square_d_low = dot(d, np.zeros_like(direction), d)
+    excess = 0.5 * ((square_d - 1) + square_d_low)  # |d| - 1, for a direction that is off by rounding only
+    along, along_low = dot(halves, unit_low, d)
     a, a_low = sum_pair(-along, along * excess - along_low)
-    near2, near2_low = square(halves, q_low)
+    near2, near2_low = square(halves, unit_low)
     near, near_low = root_pair(near2, near2_low)
     h, h_low = _across(near2, near2_low, a, a_low)
     close = np.flatnonzero(h < 1e-5 * near)  # the difference of squares loses too much: by the cross product
     if len(close):
         some, some_d = ([Split(*(part[close] for part in x)) for x in v] for v in (halves, d))
-        h[close], h_low[close] = norm(*cross(some, q_low[:, close], some_d))
+        h[close], h_low[close] = norm(*cross(some, unit_low[:, close], some_d))
         h[close], h_low[close] = sum_pair(h[close], h_low[close] - h[close] * excess[close])
+    if extreme:
+        a, a_low, near, near_low, h, h_low = (np.ldexp(x, exponent) for x in (a, a_low, near, near_low, h, h_low))
+
     endless = np.isinf(length)
     b, b_low = sum_pair(a, np.where(endless, 0.0, length))
     b = np.where(endless, np.inf, b + (b_low + a_low))

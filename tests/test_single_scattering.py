@@ -81,6 +81,19 @@ def test_thick_medium_keeps_its_digits():
     assert within(single_scattering(medium, ray, light), truth(medium, ray, light)) <= 1e-14
 
 
+@pytest.mark.parametrize("scale", [2.0**500, 2.0**-500])
+def test_scenes_of_any_size_are_one_scene(scale):
+    """Lengths times 2^k, coefficients over 2^k, intensity times 2^2k: the same radiance, digit by digit."""
+    ray = Ray([[0.1, 0.2, 0.3], [0.0, 0.0, 0.0]], [[0.6, 0.0, 0.8], [0.0, 0.0, 1.0]], [5.0, math.inf])
+    position = (0.5, 1.0, 2.0)
+    one = single_scattering(Medium(0.1, 0.2), ray, PointLight(position, 1.0))
+    scaled = Ray(ray.origin * scale, ray.direction, ray.length * scale)
+    with np.errstate(all="raise"):
+        light = PointLight(tuple(x * scale for x in position), scale * scale)
+        other = single_scattering(Medium(0.1 / scale, 0.2 / scale), scaled, light)
+    np.testing.assert_array_equal(other.value, one.value)
+
+
 @pytest.mark.parametrize("length", [3.0, 5.0, math.inf])
 def test_light_on_the_ray_is_infinite(length):
     reference = single_scattering(Medium(0.1, 0.2), Ray([0, 0, 0], [0, 0, 1.0], length), PointLight((0, 0, 3.0), 1.0))
