@@ -84,7 +84,6 @@ def test_the_free_path_samples_the_steps(name: str, rule: Any) -> None:
         dimensions=1,
         atoms=sampler.atoms,
         cdf=cdf,
-        breaks=RayMarch(MEDIA[name], OBLIQUE, 0.25, rule).edges,
         samples=100_000,
     )
     assert verdict.outcome == "not rejected", str(verdict)
