@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from fogproof.analytic import single_scattering, transmittance
 from fogproof.analytic.convex_shapes import contains
 from fogproof.analytic.convex_shapes import through as oracle_through
+from fogproof.analytic.flat_rays import blocks_of
 from fogproof.analytic.shadows import shadow_of_direction, shadow_of_point
 from fogproof.errors import FogproofError, InvalidValueError, UnsupportedError
 from fogproof.estimators import (
@@ -72,14 +73,15 @@ def test_a_point_is_in_shadow_where_the_oracle_says(occluder, origin, along, lig
         assume(abs(n @ (np.asarray(value) - c) if kind == "point" else n @ np.asarray(value)) > 1e-5)
     t = np.linspace(0, 6, 61)
     ray = Ray(origin, along, 6.0)
+    (flat,) = blocks_of(ray)
     x = ray.origin[:, None] + t * ray.direction[:, None]
     if kind == "point":
-        shadow = shadow_of_point(occluder, ray, value)
+        shadow = shadow_of_point(occluder, flat, value)
         towards = np.asarray(value)[:, None] - x
         distance = np.linalg.norm(towards, axis=0)
         w = towards / np.maximum(distance, 1e-300)
     else:
-        shadow = shadow_of_direction(occluder, ray, value)
+        shadow = shadow_of_direction(occluder, flat, value)
         distance, w = np.full(len(t), np.inf), np.broadcast_to(-np.asarray(value)[:, None], x.shape)
     start, dark, undark, end = (float(edge[0]) for edge in shadow)
     margin = 1e-6
