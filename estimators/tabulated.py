@@ -18,7 +18,12 @@ def _cells(phase: Tabulated) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 def density(phase: Tabulated, versine: np.ndarray, coversine: np.ndarray) -> np.ndarray:
     """Return the phase function [1/sr]."""
     c, f, _ = _cells(phase)
-    return np.interp(0.5 * (coversine - versine), c, f).astype(versine.dtype)
+    mu = 0.5 * (coversine - versine)
+    i = np.clip(np.searchsorted(c, mu, side="right") - 1, 0, len(c) - 2)
+    share = np.clip((mu - c[i]) / np.diff(c)[i], 0, 1)
+    return ((1 - share) * f[i] + share * f[i + 1]).astype(
+        versine.dtype
+    )  # a sum of positive terms keeps its digits near 0
 
 
 def cosines(phase: Tabulated, xi: np.ndarray) -> np.ndarray:

@@ -16,11 +16,14 @@ from fogproof.scene import CornetteShanks, Draine, Hazy, HenyeyGreenstein, Murky
 
 
 def _density(phase: PhaseFunction) -> Callable[[np.ndarray], Reference]:
+    """Return mu (n,) -> the oracle's density of the cosine; what moving mu by a few roundings of 1 changes is part of the error."""
+    rounding = 1e-15
+
     def reference(mu: np.ndarray) -> Reference:
-        per_steradian = phase_pdf(phase, mu)
-        value = 2 * np.pi * per_steradian.value
-        error = 2 * np.pi * per_steradian.error + 4e-16 * value
-        return Reference(value, error, per_steradian.method, per_steradian.source)
+        below, at, above = (phase_pdf(phase, np.clip(mu + shift, -1, 1)) for shift in (-rounding, 0, rounding))
+        spread = np.maximum(np.abs(below.value - at.value), np.abs(above.value - at.value))
+        error = 2 * np.pi * (at.error + spread + 1e-16 * at.value)
+        return Reference(2 * np.pi * at.value, error, at.method, at.source)
 
     return reference
 
