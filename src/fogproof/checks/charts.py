@@ -125,7 +125,6 @@ def _sphere(highest: float, axis: np.ndarray) -> Chart:
     turned = not np.array_equal(rows, np.eye(3))
 
     def to_point(c: np.ndarray) -> np.ndarray:
-<<<<<<< HEAD
         sine = np.sin(c[:, 0])
         local = np.stack([sine * np.cos(c[:, 1]), sine * np.sin(c[:, 1]), np.cos(c[:, 0])], axis=-1)
         return local @ rows if turned else local
@@ -134,24 +133,9 @@ def _sphere(highest: float, axis: np.ndarray) -> Chart:
         x, y, z = np.ascontiguousarray((points @ rows.T if turned else points).T)
         versine = (x * x + y * y) / (1 + np.abs(z))
         return np.where(z < 0, 2 - versine, versine), np.arctan2(y, x)
-=======
-        mu, phi = c[:, 0], c[:, 1]
-        sine = np.sqrt((1 - mu) * (1 + mu))
-        local = np.stack([sine * np.cos(phi), sine * np.sin(phi), mu], axis=-1)
-        return local if np.array_equal(rows, np.eye(3)) else _turned(local, rows)
-
-    def from_point(x: np.ndarray) -> np.ndarray:
-        local = _turned(x, rows.T)
-        return np.stack([np.clip(local[:, 2], lowest, 1), np.arctan2(local[:, 1], local[:, 0])], axis=-1)
->>>>>>> 50f48d4 (Charts without BLAS; benchmark of samplers)
 
     axes = (Axis("mu", 0.0, highest, True, _versine, _angle, np.cos), Axis("phi", -np.pi, np.pi, False))
     return Chart(axes, to_point, count, lambda c: np.sin(c[:, 0]))
-
-
-def _turned(x: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """Return x (n, 3) @ rows (3, 3) without BLAS, whose threads wait for each other where several checks run at once."""
-    return np.stack([x[:, 0] * a + x[:, 1] * b + x[:, 2] * c for a, b, c in rows.T], axis=-1)
 
 
 def _disk() -> Chart:
