@@ -34,7 +34,7 @@ class Directions:
         sampled = formulas.phase_table(self.phase)
         weight = None if sampled == self.phase else np.empty(len(u), u.dtype)
         for block in blocks(len(u)):
-            at = formulas.polar(sampled, u[block, 0])
+            at = formulas.polar(sampled, np.ascontiguousarray(u[block, 0]))
             turn(self.axis, at.versine, at.coversine, u[block, 1], out=x[block])
             pdf[block] = at.pdf
             if weight is not None:
@@ -70,7 +70,7 @@ class Cosines:
         """Map uniforms (n, 1) to cosines (n,)."""
         mu = np.empty(len(u), u.dtype)
         for block in blocks(len(u)):
-            mu[block] = formulas.cosines(self.phase, u[block, 0])
+            formulas.cosines(self.phase, u[block, 0], mu[block])
         return Draw(mu)
 
     def pdf(self, x: np.ndarray) -> np.ndarray:

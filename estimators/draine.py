@@ -31,10 +31,11 @@ def density(phase: Draine | CornetteShanks, versine: np.ndarray, coversine: np.n
     return (c0 + c1 * mu * mu) * henyey_greenstein.density(HenyeyGreenstein(g), versine, coversine)
 
 
-def cosines(phase: Draine | CornetteShanks, xi: np.ndarray) -> np.ndarray:
-    """Return forward cosines."""
+def cosines(phase: Draine | CornetteShanks, xi: np.ndarray, out: np.ndarray) -> None:
+    """Write forward cosines."""
     at = polar(phase, xi)
-    return 0.5 * (at.coversine - at.versine)
+    np.subtract(at.coversine, at.versine, out=out)
+    out *= 0.5
 
 
 def polar(phase: Draine | CornetteShanks, xi: np.ndarray) -> Polar:

@@ -10,6 +10,7 @@ import numpy as np
 from fogproof.contracts import Draw
 from fogproof.domains import HalfLine, Interval
 from fogproof.errors import InvalidValueError
+from fogproof.estimators.blocks import blocks
 from fogproof.validate import number
 
 
@@ -49,12 +50,34 @@ class Equiangular:
         return float(np.arctan2(self.h * (self.b - self.a), self.h * self.h + self.a * self.b))
 
     def sample(self, u: np.ndarray) -> Draw:
-        """Map uniforms (n, 1) to positions [m] and their density [1/m]."""
-        tangent = np.tan(u[:, 0] * self.angle)
-        with np.errstate(divide="ignore"):
-            t = self.h * (self.a + self.h * tangent) / (self.h - self.a * tangent)
-        t = np.clip(t, self.a, min(self.b, np.finfo(t.dtype).max))
-        return Draw(t, self.pdf(t))
+        """Map uniforms (n, 1) to positions [m] and their density [1/m].
+
+        t = h (a + h T)/(h - a T), T the tangent of the angle from a to t: adding the two angles first would lose the digits of
+        a short segment far from the light.
+        """
+        h, a, angle = self.h, self.a, self.angle
+        farthest = 2 * h / (angle * float(np.finfo(u.dtype).eps))  # at the last uniform below 1 on a ray without end
+        b = farthest if np.isinf(self.b) else self.b
+        x, pdf = np.empty(len(u), u.dtype), np.empty(len(u), u.dtype)
+        with np.errstate(divide="ignore", over="ignore"):
+            for block in blocks(len(u)):
+                t, p = x[block], pdf[block]
+                np.multiply(u[block, 0], angle, out=t)
+                np.tan(t, out=t)
+                np.multiply(t, -a, out=p)
+                p += h
+                t *= h
+                t += a
+                t *= h
+                t /= p
+                if np.isinf(self.b):
+                    np.copyto(t, b, where=(t < a) & (u[block, 0] > 0.5))  # rounding went past infinity
+                np.maximum(t, a, out=t)
+                np.minimum(t, b, out=t)
+                np.multiply(t, t, out=p)
+                p += h * h
+                np.divide(h / angle, p, out=p)
+        return Draw(x, pdf)
 
     def pdf(self, x: np.ndarray) -> np.ndarray:
         """Return the density at positions x (n,) [1/m]."""

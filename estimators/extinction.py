@@ -43,7 +43,7 @@ class Constant:
 
     def sigma(self, t: np.ndarray) -> np.ndarray:
         """Return the extinction coefficient."""
-        return np.full_like(t, self.sigma_t)
+        return np.broadcast_to(t.dtype.type(self.sigma_t), t.shape)
 
     def depth(self, t: np.ndarray) -> np.ndarray:
         """Return the optical depth."""

@@ -56,9 +56,10 @@ class AnalogFog:
 
     def draw(self, rng: np.random.Generator, n: int) -> Draws:
         """Return n realisations of the radiance, each at the cost of one sampled path."""
-        paths = FreePath(along(self.medium, self.ray), float(self.ray.length)).sample(rng.random((n, 1)))
+        length = float(self.ray.length)
+        paths = FreePath(along(self.medium, self.ray), length).distances(rng.random((n, 1)))
         at_collision = source_per_collision(self.medium, self.ambient)
-        return Draws(np.where(paths.event == 1, self.background, at_collision), cost=np.ones(n))
+        return Draws(np.where(paths == length, self.background, at_collision), cost=np.ones(n))
 
 
 @dataclass(frozen=True, eq=False)

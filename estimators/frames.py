@@ -1,22 +1,12 @@
-"""Orthonormal frames and directions about an axis, without loss at the poles."""
+"""Directions about an axis, without loss at the poles."""
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 
 Axis = tuple[float, float, float]
-
-
-def tangents(axis: Axis) -> tuple[np.ndarray, np.ndarray]:
-    """Return two unit vectors that make a right-handed frame with the unit vector `axis`.
-
-    Duff et al. 2017, "Building an Orthonormal Basis, Revisited": continuous but at z = 0, and free of cancellation.
-    """
-    x, y, z = axis
-    sign = float(np.copysign(1.0, z))
-    a = -1.0 / (sign + z)
-    b = x * y * a
-    return np.array([1 + sign * x * x * a, sign * b, -sign * x]), np.array([b, sign + y * y * a, -y])
 
 
 def turn(axis: Axis, versine: np.ndarray, coversine: np.ndarray, u_phi: np.ndarray, out: np.ndarray) -> np.ndarray:
@@ -31,27 +21,42 @@ def turn(axis: Axis, versine: np.ndarray, coversine: np.ndarray, u_phi: np.ndarr
     mu *= 0.5
     sine = versine * coversine
     np.sqrt(sine, out=sine)
-    half = np.pi * u_phi
-    np.tan(half, out=half)
-    square = half * half
-    square += 1
-    sine /= square  # sin theta / (1 + t^2), t the tangent
-    half *= sine
-    half *= 2
-    square -= 2
-    square *= sine  # -cos phi sin theta
-    if axis == (0.0, 0.0, 1.0):
-        out[:, 2] = mu
-        out[:, 1] = half
-        np.negative(square, out=out[:, 0])
-        return out
-    t1, t2 = tangents(axis)
-    for i in range(3):
-        np.multiply(mu, axis[i], out=sine)
-        sine += half * float(t2[i])
-        sine -= square * float(t1[i])
-        out[:, i] = sine
+    y = np.pi * u_phi
+    np.tan(y, out=y)
+    x = y * y
+    x += 1
+    sine /= x  # sin theta / (1 + t^2), t the tangent
+    y *= sine
+    y *= 2
+    np.subtract(2, x, out=x)
+    x *= sine
+    _reflect(axis, (x, y, mu), sine, out)
     return out
+
+
+def _reflect(
+    axis: Axis, local: tuple[np.ndarray, np.ndarray, np.ndarray], scratch: np.ndarray, out: np.ndarray
+) -> None:
+    """Take directions about +z to directions about `axis`, by the reflection that takes +z to it.
+
+    Householder 1958, on the plane between -z and the axis, or +z and the axis, whichever is the farther apart: no cancellation
+    for any axis. It turns the azimuth around, which is uniform.
+    """
+    if axis == (0.0, 0.0, 1.0):
+        for i in range(3):
+            out[:, i] = local[i]
+        return
+    sign = math.copysign(1.0, axis[2])
+    v = (axis[0], axis[1], axis[2] + sign)
+    share = 1 / (1 + abs(axis[2]))  # 2 / |v|^2
+    along = local[2] * (v[2] * share)
+    for i in range(2):
+        np.multiply(local[i], v[i] * share, out=scratch)
+        along += scratch
+    for i in range(3):
+        np.multiply(along, v[i], out=scratch)
+        first, second = (scratch, local[i]) if sign > 0 else (local[i], scratch)
+        np.subtract(first, second, out=out[:, i])
 
 
 def half_chord_square(x: np.ndarray, axis: Axis) -> np.ndarray:

@@ -47,24 +47,38 @@ class FreePath:
         reached = float(np.exp(-depth))
         return {} if np.isinf(self.surface) and reached == 0 else {self.surface: reached}
 
+    def distances(self, u: np.ndarray) -> np.ndarray:
+        """Map uniforms (n, 1) to distances [m] alone, for estimators that ask no more than whether the surface is reached."""
+        extinction, ends = as_extinction(self.extinction), bool(np.isfinite(self.surface))
+        x = np.empty(len(u), u.dtype)
+        factor = 0.0
+        if isinstance(extinction, Constant) and extinction.sigma_t >= np.finfo(x.dtype).tiny:
+            factor = -1 / extinction.sigma_t  # dividing each depth would cost half as much as its logarithm
+        for block in blocks(len(u)):
+            t = x[block]
+            np.negative(u[block, 0], out=t)
+            np.log1p(t, out=t)  # finite for every u in [0, 1)
+            if factor:
+                t *= factor
+            else:
+                t[:] = extinction.reach(-t)
+            if ends:
+                np.minimum(t, self.surface, out=t)
+        return x
+
     def sample(self, u: np.ndarray) -> Draw:
         """Map uniforms (n, 1) to distances [m] and their density [1/m], or probability where the surface is reached."""
-        extinction = as_extinction(self.extinction)
-        reached = self.atoms.get(self.surface, 0.0)
-        x, pdf = np.empty((2, len(u)), u.dtype)
+        extinction, x = as_extinction(self.extinction), self.distances(u)
+        reached = self.atoms.get(self.surface)
+        pdf, event = np.empty(len(u), u.dtype), np.zeros(len(u), np.int8)
         for block in blocks(len(u)):
-            xi, t, p = u[block, 0], x[block], pdf[block]
-            depth = np.negative(xi)
-            np.log1p(depth, out=depth)  # finite for every u in [0, 1)
-            np.negative(depth, out=depth)
-            t[:] = extinction.reach(depth)
-            np.subtract(1, xi, out=p)
-            p *= extinction.sigma(t)
-            if reached > 0:
-                hit = t >= self.surface
-                np.copyto(p, reached, where=hit)
-                np.minimum(t, self.surface, out=t)
-        return Draw(x, pdf, event=(x >= self.surface).astype(np.int64))
+            p = pdf[block]
+            np.subtract(1, u[block, 0], out=p)
+            p *= extinction.sigma(x[block])
+            if reached is not None:
+                np.equal(x[block], self.surface, out=event[block].view(bool))
+                np.copyto(p, reached, where=event[block].view(bool))
+        return Draw(x, pdf, event=event)
 
     def pdf(self, x: np.ndarray) -> np.ndarray:
         """Return the density of collisions at distances x (n,) [1/m]."""

@@ -13,9 +13,10 @@ def density(phase: Isotropic, versine: np.ndarray, coversine: np.ndarray) -> np.
     return np.full_like(versine, 0.25 / np.pi)
 
 
-def cosines(phase: Isotropic, xi: np.ndarray) -> np.ndarray:
-    """Return forward cosines."""
-    return 2 * xi - 1
+def cosines(phase: Isotropic, xi: np.ndarray, out: np.ndarray) -> None:
+    """Write forward cosines."""
+    np.multiply(xi, 2, out=out)
+    out -= 1
 
 
 def polar(phase: Isotropic, xi: np.ndarray) -> Polar:

@@ -29,33 +29,31 @@ def _density(n: int, coversine: np.ndarray) -> np.ndarray:
     return power
 
 
-def cosines(phase: Hazy | Murky, xi: np.ndarray) -> np.ndarray:
-    """Return forward cosines."""
-    u, lobe = _split(xi)
-    np.exp(_log(u) / (POWER[type(phase)] + 1), out=u, where=lobe)
-    u *= 2
-    u -= 1
-    return u
+def cosines(phase: Hazy | Murky, xi: np.ndarray, out: np.ndarray) -> None:
+    """Write forward cosines: u = v^1 or v^(1/(n + 1)), whichever half xi lies in, by one exponential for both."""
+    n = POWER[type(phase)]
+    v = 2 * xi
+    v -= 1
+    power = np.sign(v)
+    power *= -0.5 * n / (n + 1)
+    power += 1 - 0.5 * n / (n + 1)
+    np.abs(v, out=v)
+    with np.errstate(divide="ignore"):
+        np.log(v, out=v)
+    v *= power
+    np.exp(v, out=v)
+    np.multiply(v, 2, out=out)
+    out -= 1
 
 
 def polar(phase: Hazy | Murky, xi: np.ndarray) -> Polar:
     """Return scattering angles and their pdf."""
     n = POWER[type(phase)]
-    u, lobe = _split(xi)
-    log = _log(u) / (n + 1)
+    u = 2 * xi - 1
+    lobe = u >= 0
+    u = np.abs(u)
+    with np.errstate(divide="ignore"):
+        log = np.log(u) / (n + 1)
     coversine = 2 * np.where(lobe, np.exp(log), u)
     versine = np.where(lobe, -2 * np.expm1(log), 2 * (1 - u))
     return Polar(versine, coversine, _density(n, coversine))
-
-
-def _split(xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return a fresh uniform in [0, 1] and whether it is for the lobe."""
-    u = 2 * xi
-    u -= 1
-    lobe = u >= 0
-    return np.abs(u, out=u), lobe
-
-
-def _log(u: np.ndarray) -> np.ndarray:
-    """Return log u, and for u = 0 that of the smallest normal number: its root is as good as 0 in a cosine."""
-    return np.log(np.maximum(u, np.finfo(u.dtype).tiny))

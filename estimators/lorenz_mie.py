@@ -27,9 +27,9 @@ def density(phase: Mie, versine: np.ndarray, coversine: np.ndarray) -> np.ndarra
     return _intensity(phase, 0.5 * (coversine - versine)).astype(versine.dtype)
 
 
-def cosines(phase: Mie, xi: np.ndarray) -> np.ndarray:
-    """Return forward cosines with the density of the table."""
-    return tabulated.cosines(table(phase), xi)
+def cosines(phase: Mie, xi: np.ndarray, out: np.ndarray) -> None:
+    """Write forward cosines with the density of the table."""
+    tabulated.cosines(table(phase), xi, out)
 
 
 def polar(phase: Mie, xi: np.ndarray) -> Polar:

@@ -55,13 +55,14 @@ def polar(phase: PhaseFunction, xi: np.ndarray) -> Polar:
     return formulas.polar(phase, xi) if formulas else mixture.polar(_parts(phase), xi)
 
 
-def cosines(phase: PhaseFunction, xi: np.ndarray) -> np.ndarray:
-    """Map uniforms (n,) to forward cosines."""
+def cosines(phase: PhaseFunction, xi: np.ndarray, out: np.ndarray) -> None:
+    """Write to `out` the forward cosines that uniforms (n,) map to."""
     formulas = FORMULAS.get(type(phase))
     if formulas:
-        return formulas.cosines(phase, xi)
-    at = polar(phase, xi)
-    return 0.5 * (at.coversine - at.versine)
+        formulas.cosines(phase, xi, out)
+    else:
+        at = mixture.polar(_parts(phase), xi)
+        np.multiply(0.5, at.coversine - at.versine, out=out)
 
 
 def phase_table(phase: PhaseFunction) -> PhaseFunction:

@@ -4,7 +4,7 @@ Every phase function here is a module with three functions of its parameters `ph
 
     polar(phase, xi)                      (n,) uniforms in [0, 1) -> `Polar`
     density(phase, versine, coversine)    (n,) -> (n,) [1/sr]
-    cosines(phase, xi)                    (n,) uniforms -> the forward cosines mu alone, for those who turn no directions
+    cosines(phase, xi, out)               (n,) uniforms -> the forward cosines mu alone, written to `out`
 
 `polar` and `cosines` invert the cdf of mu, where they do not choose between two lobes first.
 """

@@ -26,10 +26,11 @@ def density(phase: Tabulated, versine: np.ndarray, coversine: np.ndarray) -> np.
     )  # a sum of positive terms keeps its digits near 0
 
 
-def cosines(phase: Tabulated, xi: np.ndarray) -> np.ndarray:
-    """Return forward cosines."""
+def cosines(phase: Tabulated, xi: np.ndarray, out: np.ndarray) -> None:
+    """Write forward cosines."""
     at = polar(phase, xi)
-    return 0.5 * (at.coversine - at.versine)
+    np.subtract(at.coversine, at.versine, out=out)
+    out *= 0.5
 
 
 def polar(phase: Tabulated, xi: np.ndarray) -> Polar:

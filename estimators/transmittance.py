@@ -23,9 +23,8 @@ class AnalogTransmittance:
 
     def draw(self, rng: np.random.Generator, n: int) -> Draws:
         """Return n realisations, each at the cost of one sampled path."""
-        paths = FreePath(self.extinction, self.length).sample(rng.random((n, 1)))
-        assert paths.event is not None
-        return Draws(paths.event.astype(np.float64), cost=np.ones(n))
+        paths = FreePath(self.extinction, self.length).distances(rng.random((n, 1)))
+        return Draws((paths == self.length).astype(np.float64), cost=np.ones(n))
 
 
 @dataclass(frozen=True)

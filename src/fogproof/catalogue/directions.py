@@ -88,7 +88,7 @@ def direction_case(
     """Return the case of a direction sampler: its pdf is the oracle's, and forward means forward."""
     axis = more.pop("axis", POLE)
     options = {"axis": axis, "mean_cosine": mean, **more.pop("options", {})}
-    reference = oracle_pdf(phase, axis, 4e-7 if options.get("precision") == "float32" else 2e-15)
+    reference = oracle_pdf(phase, axis, 1e-6 if options.get("precision") == "float32" else 2e-15)
     return SamplerCase(
         name=name,
         title=title,
