@@ -3,7 +3,8 @@
     python tools/power.py [--seeds 20] [--samples 1000000] [--alpha 1e-6] [--only TEXT] [-o build/power.json]
 
 The subjects are Henyey-Greenstein directions with g = 0.8 and free paths before a surface at tau = 0.7. Rows marked
-"right" hold no error and must never be rejected.
+"right" hold no error and must never be rejected; rows with a number of samples of their own give the check
+twice what the best test there is (Neyman & Pearson) would need.
 """
 
 from __future__ import annotations
@@ -22,11 +23,13 @@ import numpy as np
 from fogproof.checks import Verdict, check_sampler, fresh_seed
 from fogproof.contracts import Draw
 from fogproof.domains import Interval, UnitSphere
-from fogproof.estimators import HenyeyGreensteinDirections, HomogeneousFreePath
+from fogproof.estimators import Directions, FreePath
+from fogproof.scene import HenyeyGreenstein
 
 G = 0.8
-HG = HenyeyGreensteinDirections(G)
-PATH = HomogeneousFreePath(1.4, 0.5)
+SIGMA_T = 1.4
+HG = Directions(HenyeyGreenstein(G))
+PATH = FreePath(SIGMA_T, 0.5)
 SURFACE = PATH.atoms[0.5]
 
 
@@ -40,9 +43,11 @@ class Mutant:
     domain: Any = field(default_factory=UnitSphere)
     options: dict[str, Any] = field(default_factory=lambda: {"dimensions": 2})
     wrong: bool = True
+    samples: int | None = None
 
     def check(self, samples: int, alpha: float, seed: int) -> Verdict:
         """Return the verdict of one call."""
+        samples = self.samples or samples
         return check_sampler(
             self.sample, self.pdf, self.domain, samples=samples, alpha=alpha, seed=seed, **self.options
         )
@@ -62,8 +67,25 @@ def _scaled(factor: float) -> Mutant:
     return Mutant(f"pdf x {factor:g}", _points, lambda x: factor * HG.pdf(x))
 
 
-def _other_g(g: float) -> Mutant:
-    return Mutant(f"g - {G - g:.3f}", lambda u: HenyeyGreensteinDirections(g).sample(u).x)
+def _other_g(g: float, samples: int | None = None) -> Mutant:
+    within = f", {samples:.3g} samples" if samples else ""
+    other = Directions(HenyeyGreenstein(g))
+    return Mutant(f"g - {G - g:.3f}{within}", lambda u: other.sample(u).x, samples=samples)
+
+
+def neyman_pearson(g: float, alpha: float = 1e-6, miss: float = 0.01) -> int:
+    """Return how many samples the best of all tests needs to tell g from G, for a normal log-likelihood ratio.
+
+    (z_alpha + z_miss)^2 / n is its chi-square distance, the integral of (p/q - 1)^2 q over the cosine.
+    """
+    from scipy.integrate import quad
+    from scipy.special import ndtri
+
+    def density(h: float, mu: float) -> float:
+        return float((1 - h * h) / (2 * (1 + h * h - 2 * h * mu) ** 1.5))
+
+    distance, _ = quad(lambda mu: (density(g, mu) / density(G, mu) - 1) ** 2 * density(G, mu), -1, 1)
+    return int((ndtri(alpha) + ndtri(miss)) ** 2 / distance)
 
 
 def _part_of_circle(turn: float) -> Mutant:
@@ -113,7 +135,7 @@ def _mislabelled(u: np.ndarray) -> Draw:
 
 
 def _fewer_surfaces(u: np.ndarray) -> np.ndarray:
-    depth = -np.log1p(-u[:, 0] * (1 - SURFACE)) / PATH.sigma_t
+    depth = -np.log1p(-u[:, 0] * (1 - SURFACE)) / SIGMA_T
     return np.where(u[:, 1] < 0.99 * SURFACE, PATH.surface, depth)
 
 
@@ -126,6 +148,8 @@ MUTANTS = [
     _other_g(0.79),
     _other_g(0.795),
     _other_g(0.798),
+    _other_g(0.79, 2 * neyman_pearson(0.79)),
+    _other_g(0.798, 2 * neyman_pearson(0.798)),
     _part_of_circle(0.995),
     _part_of_circle(0.9995),
     Mutant("cos flipped in the sampler", _flipped),

@@ -43,12 +43,15 @@ DOUBT = 0.01
 """A smallest p-value (times its number of rivals) below this is doubtful."""
 
 
+GROSS = {"distribution", "smooth", "atom", "lost samples"}
+"""The quick tests that no gross error escapes: only these are run at an early look, unless one of them rejects."""
+
+
 @dataclass(frozen=True)
 class Test:
-    """One statistical test: `run` takes its share of alpha and returns what it found."""
+    """One statistical test of a kind that has a weight: `run` takes its share of alpha and returns what it found."""
 
-    name: str
-    weight: float
+    kind: str
     run: Callable[[float], Finding]
 
 
@@ -92,10 +95,19 @@ def _distance(n: int, alpha: float) -> float:
     return kolmogorov_critical(n, alpha) + math.sqrt(math.log(2 / MISS) / (2 * n)) + 32 / n
 
 
-def judged(tests: list[Test], alpha: float) -> list[Finding]:
-    """Run the tests, each with its share of alpha."""
-    weights = sum(test.weight for test in tests)
-    return [test.run(alpha * test.weight / weights) for test in tests]
+def total_weight(tests: list[Test]) -> float:
+    """Return the sum of the weights of all tests."""
+    return sum(WEIGHTS[test.kind] for test in tests)
+
+
+def judged(tests: list[Test], alpha: float, final: bool) -> list[Finding]:
+    """Run the tests, each with its share of alpha; at an early look only the quick ones, as long as none of them rejects."""
+    share = alpha / total_weight(tests)
+    if not final:
+        quick = [test.run(share * WEIGHTS[test.kind]) for test in tests if test.kind in GROSS]
+        if all(finding.outcome != "rejected" for finding in quick):
+            return quick
+    return [test.run(share * WEIGHTS[test.kind]) for test in tests]
 
 
 def doubtful(findings: list[Finding], alpha: float) -> bool:

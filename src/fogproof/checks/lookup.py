@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+_BELOW_ONE = 1 - 2.0**-53
 _MOST_COMPARED = 3  # edges of one bucket that are compared one by one; fuller buckets are searched
 
 
@@ -18,6 +19,7 @@ class Lookup:
     """Edges (m + 1,) and the two grids of buckets over them."""
 
     edges: np.ndarray
+    following: np.ndarray
     scale: float
     buckets: int
     base: np.ndarray
@@ -44,24 +46,25 @@ class Lookup:
         filled = np.bincount(bucket, minlength=int(fine.sum()))
         most = int(filled.max(initial=0))
         crowded = filled > _MOST_COMPARED if most > _MOST_COMPARED else None
-        return Lookup(edges, scale, buckets, base, fine, np.cumsum(filled) - filled, min(most, _MOST_COMPARED), crowded)
+        following, first = np.append(inner, np.inf), np.cumsum(filled) - filled
+        most = min(most, _MOST_COMPARED)
+        return Lookup(edges, following, scale, buckets, base, fine.astype(float), first, most, crowded)
 
     def __call__(self, t: np.ndarray) -> np.ndarray:
         """Return (n,) the cell of each t: the last i with edges[i] <= t, clipped to the cells that there are."""
         place = (np.clip(t, self.edges[0], self.edges[-1]) - self.edges[0]) * self.scale
         coarse = np.minimum(place.astype(np.intp), self.buckets - 1)
-        bucket = self.base[coarse] + _sub(place, coarse, self.fine)
-        index = self.first[bucket]
-        last = len(self.edges) - 2
+        bucket = self.base.take(coarse) + _sub(place, coarse, self.fine)
+        index = self.first.take(bucket)
         for _ in range(self.most):
-            np.minimum(index + (t >= self.edges[index + 1]), last, out=index)
+            index += t >= self.following.take(index)
         if self.crowded is not None:
             slow = self.crowded[bucket]
             found = np.searchsorted(self.edges, t[slow], side="right") - 1
-            index[slow] = np.clip(found, 0, last)
+            index[slow] = np.clip(found, 0, len(self.edges) - 2)
         return index
 
 
 def _sub(place: np.ndarray, coarse: np.ndarray, fine: np.ndarray) -> np.ndarray:
-    parts = fine[coarse]
-    return np.clip((place - coarse) * parts, 0, parts - 1).astype(np.intp)
+    inside = np.minimum(place - coarse, _BELOW_ONE)
+    return (inside * fine.take(coarse)).astype(np.intp)

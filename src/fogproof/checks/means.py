@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from fogproof.checks.goodness import MISS, binomial_p
+from fogproof.checks.tails import normal_quantile, student_two_sided
 from fogproof.checks.verdict import Finding, Outcome, Resolution
 
 LARGEST_CORRECTION = 1.0  # of the exponent |skewness| z^3 / (3 sqrt n); beyond it the expansion is not trusted
@@ -113,9 +114,8 @@ def mean_test(name: str, what: str, data: Moments, reference: float, error: floa
 
 
 def _resolution(what: str, data: Moments, error: float, alpha: float) -> Resolution:
-    from scipy.special import ndtri
-
-    return Resolution(f"bias of {what}", float(-ndtri(alpha / 2) - ndtri(MISS)) * data.stderr + error, MISS)
+    reach = normal_quantile(alpha / 2) + normal_quantile(MISS)
+    return Resolution(f"bias of {what}", reach * data.stderr + error, MISS)
 
 
 def _constant(name: str, what: str, data: Moments, reference: float, error: float, alpha: float) -> Finding:
@@ -144,13 +144,11 @@ def _two_values(name: str, what: str, data: Moments, reference: float, error: fl
 
 
 def _student(name: str, what: str, data: Moments, reference: float, error: float, alpha: float) -> Finding:
-    from scipy.special import ndtri, stdtr
-
     gap = max(abs(data.mean - reference) - error, 0.0)
     z = gap / data.stderr
-    needed = float(-ndtri(alpha / 2))
+    needed = normal_quantile(alpha / 2)
     growth = abs(data.skewness) / (3 * math.sqrt(data.n))
-    p_normal = min(1.0, 2 * float(stdtr(data.n - 1, -z)))
+    p_normal = student_two_sided(data.n - 1, z)
     effect = data.mean - reference
     message = (
         f"{what} {data.mean:.7g} +- {data.stderr:.2g}, reference {reference:.7g} (z = {effect / data.stderr:+.2f})"

@@ -7,9 +7,12 @@ lies beyond that is an undeclared atom, a generator of few values, or a stream t
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from fogproof.checks.subject import Precision
+from fogproof.checks.tails import poisson_at_least
 from fogproof.checks.verdict import Finding, Outcome
 from fogproof.domains import Domain, UnitHemisphere, UnitSphere
 
@@ -76,13 +79,15 @@ def expected_repeats(
     return float(n * pole_mass + pairs * (uniforms + np.mean(np.minimum(density * cell, 1.0))))
 
 
-def repeats_test(name: str, prints: np.ndarray, expected: float, alpha: float) -> Finding:
-    """Test that there are no more repetitions than the float grid explains: a Poisson bound."""
-    from scipy.special import pdtrc
+def repeats_test(name: str, prints: np.ndarray, expected: Callable[[int], float], alpha: float) -> Finding:
+    """Test that there are no more repetitions than the float grid explains: a Poisson bound.
 
+    prints    (n,) fingerprints
+    expected  n -> about how many repetitions rounding explains
+    """
     n, seen = len(prints), repeated(prints)
-    allowed = _SLACK * expected
-    p = 1.0 if seen == 0 else float(pdtrc(seen - 1, max(allowed, 1e-300)))
+    allowed = _SLACK * expected(n)
+    p = poisson_at_least(seen, max(allowed, 1e-300))
     outcome: Outcome = "rejected" if p <= alpha else "not rejected"
     message = f"{seen} of the first {n} points repeat an earlier one; rounding explains up to about {allowed:.2g}"
     effect = seen / max(n, 1)

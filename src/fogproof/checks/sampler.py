@@ -18,7 +18,7 @@ from typing import Any, get_args
 import numpy as np
 
 from fogproof.checks.diagnosis import likely_cause, mirrored
-from fogproof.checks.escalation import WEIGHTS, Test, doubtful, judged, stages
+from fogproof.checks.escalation import Test, doubtful, judged, stages, total_weight
 from fogproof.checks.figures import bins_figure, z_map_figure
 from fogproof.checks.goodness import binomial, chi_square, chi_square_along, chi_square_sparse, kolmogorov
 from fogproof.checks.means import Moments, mean_test
@@ -86,12 +86,12 @@ def check_sampler(
     with np.errstate(all="ignore"):  # what is infinite or undefined is found, not warned of
         prepared = prepare(subject, samples, seed)
         tally = prepared.counter.empty()
-        looks = stages(samples, resolution, alpha, total_weight(prepared, tally))
+        looks = stages(samples, resolution, alpha, total_weight(tests_of(prepared, tally)))
         findings: list[Finding] = []
         for look in looks:
             tally = drawn(prepared, tally, look.samples, seed)
             prepared = prepared.refined(tally)
-            findings = judge(prepared, tally, alpha * look.share)
+            findings = judge(prepared, tally, alpha * look.share, look.final)
             rejected = any(f.outcome == "rejected" for f in findings)
             if rejected or (look.final and not doubtful(findings, alpha * look.share)):
                 break
@@ -125,20 +125,15 @@ def drawn(prepared: Prepared, tally: Tally, samples: int, seed: int) -> Tally:
     return tally
 
 
-def judge(prepared: Prepared, tally: Tally, alpha: float) -> list[Finding]:
+def judge(prepared: Prepared, tally: Tally, alpha: float, final: bool = True) -> list[Finding]:
     """Return all findings about the samples so far; the statistical ones share alpha."""
     findings = [prepared.normalisation(tally.drawn), *prepared.findings, *tally.watch.findings()]
-    statistical = judged(tests_of(prepared, tally), alpha)
+    statistical = judged(tests_of(prepared, tally), alpha, final)
     rejected = any(f.outcome == "rejected" for f in statistical)
     sphere = isinstance(prepared.subject.domain, UnitSphere) and prepared.subject.cdf is None
     if rejected and sphere and mirrored(prepared.grid.marginals[0], tally.fine[0]):
         statistical = [f.because("sign convention") if f.cause else f for f in statistical]
     return findings + _illustrated(prepared, tally, statistical)
-
-
-def total_weight(prepared: Prepared, tally: Tally) -> float:
-    """Return the sum of the weights of all tests."""
-    return sum(test.weight for test in tests_of(prepared, tally))
 
 
 def tests_of(prepared: Prepared, tally: Tally) -> list[Test]:
@@ -147,7 +142,7 @@ def tests_of(prepared: Prepared, tally: Tally) -> list[Test]:
     tests: list[Test] = []
 
     def add(kind: str, run: Callable[..., Finding], name: str, *arguments: Any) -> None:
-        tests.append(Test(name, WEIGHTS[kind], partial(run, name, *arguments)))
+        tests.append(Test(kind, partial(run, name, *arguments)))
 
     several = len(grid.marginals) > 1
     for axis, (marginal, counts) in enumerate(zip(grid.marginals, tally.fine, strict=True)):
@@ -171,8 +166,7 @@ def tests_of(prepared: Prepared, tally: Tally) -> list[Test]:
             add("fine joint", chi_square_sparse, "chi-square, fine joint", *fine)
     add("serial correlation", serial_test, "serial correlation", tally.serial)
     if prepared.counter.fingerprinted:
-        expected = prepared.expected_repeats(len(tally.prints))
-        add("repeated points", repeats_test, "repeated points", tally.prints, expected)
+        add("repeated points", repeats_test, "repeated points", tally.prints, prepared.expected_repeats)
     n = max(tally.drawn, 1)
     wrong_atom = "wrong probability of an atom"
     rest, slack = 1 - sum(subject.atoms.values()), FLOOR[subject.precision]

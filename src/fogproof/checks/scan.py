@@ -12,11 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fogproof.checks.goodness import MISS, between, binomial_interval, binomial_p, nothing_counted
+from fogproof.checks.goodness import MISS, between, binomial_p, deviances, nothing_counted
 from fogproof.checks.grid import Marginal, Plane
+from fogproof.checks.tails import binomial_interval
 from fogproof.checks.verdict import Finding, Interval, Resolution
-
-_TRIED = 2  # intervals of each length, the most conspicuous ones, whose exact p-value is computed
 
 
 @dataclass(frozen=True)
@@ -49,11 +48,11 @@ def scan(name: str, marginal: Marginal, counts: np.ndarray, alpha: float) -> Fin
         observed = total[start + length] - total[start]
         low, high = marginal.cdf[start], marginal.cdf[start + length]
         slack = marginal.doubt(start, start + length) + marginal.blur[start] + marginal.blur[start + length]
-        for i in _conspicuous(observed, n * (high - low), n * slack)[:_TRIED]:
-            mass = float(high[i] - low[i])
-            p = binomial_p(int(observed[i]), n, mass - slack[i], mass + slack[i]) * len(start) * len(lengths)
-            place = _Place(p, int(start[i]), int(start[i]) + length, int(observed[i]), mass)
-            best = place if place.beats(best, n) else best
+        i = _conspicuous(observed, n * (high - low), n * slack)
+        mass = float(high[i] - low[i])
+        p = binomial_p(int(observed[i]), n, mass - slack[i], mass + slack[i]) * len(start) * len(lengths)
+        place = _Place(p, int(start[i]), int(start[i]) + length, int(observed[i]), mass)
+        best = place if place.beats(best, n) else best
     rivals = 2 * len(counts) * len(lengths)
     resolution = Resolution(f"missing band in {marginal.label}", _smallest_band(n, alpha / rivals), MISS)
     return _finding(name, best, n, alpha, between(marginal, best.first, best.last), resolution, len(counts), True)
@@ -122,14 +121,10 @@ def scan_plane(name: str, labels: tuple[str, str], plane: Plane, counts: np.ndar
     best, where, size = _Place(1.0, 0, 1, n, 1.0), (0, 0), 1
     for observed, probability, slack in levels:
         o, q, e = observed.ravel(), probability.ravel(), slack.ravel()
-        for i in _conspicuous(o, n * q, n * e)[:_TRIED]:
-            p = binomial_p(int(o[i]), n, q[i] - e[i], q[i] + e[i]) * len(o) * len(levels)
-            if p < best.p:
-                best, where, size = (
-                    _Place(p, 0, 1, int(o[i]), float(q[i])),
-                    divmod(int(i), len(observed)),
-                    len(observed),
-                )
+        i = _conspicuous(o, n * q, n * e)
+        p = binomial_p(int(o[i]), n, q[i] - e[i], q[i] + e[i]) * len(o) * len(levels)
+        if p < best.p:
+            best, where, size = _Place(p, 0, 1, int(o[i]), float(q[i])), divmod(i, len(observed)), len(observed)
     finest = levels[0][0].size
     resolution = Resolution(
         "missing patch (of equal shares of both axes)", 4 * _smallest_band(n, alpha / (finest * len(levels))), MISS
@@ -146,16 +141,10 @@ def blocks(values: np.ndarray, size: int) -> np.ndarray:
     return values.reshape(size, step, size, step).sum(axis=(1, 3))
 
 
-def _conspicuous(observed: np.ndarray, expected: np.ndarray, slack: np.ndarray) -> np.ndarray:
-    """Return the indices of the most conspicuous counts, by Poisson deviance, the worst first."""
+def _conspicuous(observed: np.ndarray, expected: np.ndarray, slack: np.ndarray) -> int:
+    """Return the index of the most conspicuous count, by Poisson deviance: its p-value is about the smallest, never less."""
     kind = np.clip(observed, expected - slack, expected + slack)
-    kind = np.maximum(kind, 1e-300)
-    ratio = np.maximum(observed, 1e-300) / kind
-    deviance = np.where(observed > 0, observed * np.log(ratio), 0.0) - (observed - kind)
-    if len(deviance) <= _TRIED:
-        return np.argsort(deviance)[::-1]
-    top = np.argpartition(deviance, -_TRIED)[-_TRIED:]
-    return top[np.argsort(deviance[top])[::-1]]
+    return int(np.argmax(deviances(observed, kind)))
 
 
 def _smallest_band(n: int, p: float) -> float:
