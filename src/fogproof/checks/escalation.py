@@ -35,13 +35,12 @@ WEIGHTS = {
 
 _GROWTH = 16  # of the sample from one look for gross errors to the next
 _FIRST = 1 << 15  # samples of the first look for gross errors, at least
-_EARLY = (
-    1e-50  # of alpha is spent on the looks for gross errors: whatever they stop is beyond doubt, and it costs no power
-)
 _DOUBT_GROWTH = 4  # of the sample when a first stage leaves doubt
 DOUBT = 0.01
 """A smallest p-value (times its number of rivals) below this is doubtful."""
 
+EARLY = 1e-50
+"""Share of alpha for the looks for gross errors: whatever they stop is beyond doubt, and they cost no power."""
 
 GROSS = {"distribution", "smooth", "atom", "lost samples"}
 """The quick tests that no gross error escapes: only these are run at an early look, unless one of them rejects."""
@@ -75,8 +74,8 @@ def stages(samples: int, resolution: float | None, alpha: float, weights: float)
         while sizes[-1] // _GROWTH >= _FIRST:
             sizes.append(sizes[-1] // _GROWTH)
         early = len(sizes) - 1
-        last = 1.0 - _EARLY if early else 1.0
-        return tuple(Stage(n, last if n == samples else _EARLY / early, final=n == samples) for n in reversed(sizes))
+        last = 1.0 - EARLY if early else 1.0
+        return tuple(Stage(n, last if n == samples else EARLY / early, final=n == samples) for n in reversed(sizes))
     share = 0.5 / 8 * alpha * WEIGHTS["distribution"] / weights
     first = 1000
     while first < samples and _distance(first, share) > resolution:

@@ -8,14 +8,14 @@ multiplied by that factor, and where it is large, or one sample dominates the va
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from fogproof.checks.goodness import MISS, binomial_p
 from fogproof.checks.tails import normal_quantile, student_two_sided
-from fogproof.checks.verdict import Finding, Outcome, Resolution
+from fogproof.checks.verdict import Finding, Interval, Outcome, Resolution
 
 LARGEST_CORRECTION = 1.0  # of the exponent |skewness| z^3 / (3 sqrt n); beyond it the expansion is not trusted
 LARGEST_SHARE = 0.05  # of one sample in the sum of squares; beyond it the variance itself may be infinite
@@ -104,13 +104,35 @@ class Moments:
         return max(self.high - self.mean, self.mean - self.low) ** 2 / self.m2 if self.m2 > 0 else 0.0
 
 
-def mean_test(name: str, what: str, data: Moments, reference: float, error: float, alpha: float) -> Finding:
+def mean_test(
+    name: str, what: str, data: Moments, reference: float, error: float, alpha: float, cause: str = "bias"
+) -> Finding:
     """Test that the expectation behind `data` lies within `error` of `reference`."""
+    if data.n == 0:
+        return Finding(name, "inconclusive", f"{what}: there are no data", alpha=alpha)
     if data.values is not None and len(data.values) == 1:
-        return _constant(name, what, data, reference, error, alpha)
-    if data.values is not None:
-        return _two_values(name, what, data, reference, error, alpha)
-    return _student(name, what, data, reference, error, alpha)
+        finding = _constant(name, what, data, reference, error, alpha)
+    elif data.values is not None:
+        finding = _two_values(name, what, data, reference, error, alpha)
+    else:
+        finding = _student(name, what, data, reference, error, alpha)
+    reach = normal_quantile(0.5 * MISS) * data.stderr
+    effect = data.mean - reference
+    interval = Interval(effect - reach, effect + reach, 1 - MISS)
+    rejected = finding.outcome == "rejected"
+    return replace(finding, interval=interval, cause=cause if rejected else "", region=_side(effect, rejected))
+
+
+def _side(effect: float, rejected: bool) -> tuple[str, ...]:
+    return (("too large" if effect > 0 else "too small"),) if rejected else ()
+
+
+def trusted(data: Moments, alpha: float) -> bool:
+    """Return whether Student's test may be used at alpha: two values are tested exactly, skewed ones need many samples."""
+    if data.values is not None or data.m2 == 0:
+        return True
+    growth = abs(data.skewness) / (3 * math.sqrt(data.n)) * normal_quantile(alpha / 2) ** 3
+    return growth <= LARGEST_CORRECTION and data.largest_share <= LARGEST_SHARE
 
 
 def _resolution(what: str, data: Moments, error: float, alpha: float) -> Resolution:
@@ -138,7 +160,7 @@ def _two_values(name: str, what: str, data: Moments, reference: float, error: fl
     step = high - low
     p = binomial_p(count, data.n, (reference - error - low) / step, (reference + error - low) / step)
     outcome: Outcome = "rejected" if p <= alpha else "not rejected"
-    message = f"{what} {data.mean:.7g}, reference {reference:.7g} (exact binomial test)"
+    message = f"{what} {data.mean:.7g}, reference {reference:.7g} (exact binomial test of its two values)"
     effect = data.mean - reference
     return Finding(name, outcome, message, p, alpha, False, effect, effect, _resolution(what, data, error, alpha))
 
@@ -153,8 +175,7 @@ def _student(name: str, what: str, data: Moments, reference: float, error: float
     message = (
         f"{what} {data.mean:.7g} +- {data.stderr:.2g}, reference {reference:.7g} (z = {effect / data.stderr:+.2f})"
     )
-    trusted = growth * needed**3 <= LARGEST_CORRECTION and data.largest_share <= LARGEST_SHARE
-    if not trusted:
+    if not trusted(data, alpha):
         enough = math.ceil(data.n * max(growth * needed**3 / LARGEST_CORRECTION, 1) ** 2)
         message += (
             f"; too skewed for a test at alpha = {alpha:.1g} (skewness {data.skewness:.3g}, the largest sample has"

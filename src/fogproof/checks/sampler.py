@@ -10,15 +10,15 @@ atom's exact law.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, get_args
 
 import numpy as np
 
 from fogproof.checks.diagnosis import likely_cause, mirrored
-from fogproof.checks.escalation import Test, doubtful, judged, stages, total_weight
+from fogproof.checks.escalation import EARLY, Stage, Test, doubtful, judged, stages, total_weight
 from fogproof.checks.figures import bins_figure, z_map_figure
 from fogproof.checks.goodness import binomial, chi_square, chi_square_along, chi_square_sparse, kolmogorov
 from fogproof.checks.means import Moments, mean_test
@@ -76,53 +76,120 @@ def check_sampler(
     alpha        false-alarm probability of this call with everything in it
     seed         any whole number; None draws a fresh one, which the verdict states
     """
-    started = time.perf_counter()
-    atoms = dict(atoms or {})
-    subject = Subject(
-        sample, pdf, domain, dimensions, atoms, cdf, eval, axis, mean_cosine, albedo, reference, precision
+    check = SamplerCheck.of(
+        Subject(
+            sample,
+            pdf,
+            domain,
+            dimensions,
+            dict(atoms or {}),
+            cdf,
+            eval,
+            axis,
+            mean_cosine,
+            albedo,
+            reference,
+            precision,
+        ),
+        resolution,
+        samples,
+        alpha,
+        seed,
     )
-    _validate(subject, samples, alpha, resolution)
-    seed = fresh_seed() if seed is None else seed
-    with np.errstate(all="ignore"):  # what is infinite or undefined is found, not warned of
-        prepared = prepare(subject, samples, seed)
-        tally = prepared.counter.empty()
-        looks = stages(samples, resolution, alpha, total_weight(tests_of(prepared, tally)))
-        findings: list[Finding] = []
-        for look in looks:
-            tally = drawn(prepared, tally, look.samples, seed)
-            prepared = prepared.refined(tally)
-            findings = judge(prepared, tally, alpha * look.share, look.final)
+    return check.run()
+
+
+@dataclass(frozen=True)
+class SamplerCheck:
+    """A check in parts: batches drawn anywhere and in any number of sittings, judged once they are together.
+
+    Two of the same subject and seed have the same cells, so tallies of theirs merge; a tally is written and read with
+    `Tally.to_dict` and `read`.
+    """
+
+    prepared: Prepared
+    looks: tuple[Stage, ...]
+    alpha: float
+    seed: int
+    started: float
+
+    @staticmethod
+    def of(subject: Subject, resolution: float | None, samples: int, alpha: float, seed: int | None) -> SamplerCheck:
+        """Validate the arguments, those of `check_sampler`, and ask all questions that need no samples."""
+        started = time.perf_counter()
+        _validate(subject, samples, alpha, resolution)
+        seed = fresh_seed() if seed is None else seed
+        with np.errstate(all="ignore"):  # what is infinite or undefined is found, not warned of
+            prepared = prepare(subject, samples, seed)
+        weight = total_weight(tests_of(prepared, prepared.counter.empty()))
+        return SamplerCheck(prepared, stages(samples, resolution, alpha, weight), alpha, seed, started)
+
+    @property
+    def batches(self) -> int:
+        """How many batches make up the largest number of samples."""
+        return len(batch_sizes(self.prepared.samples))
+
+    def tally(self, batches: Iterable[int]) -> Tally:
+        """Draw and count the given batches, increasing numbers below `batches`."""
+        sizes, tally = batch_sizes(self.prepared.samples), self.prepared.counter.empty()
+        with np.errstate(all="ignore"):
+            for index in batches:
+                draw = self.prepared.subject.draw(batch_generator(self.seed, "samples", 1, index), sizes[index])
+                tally = tally.merged(self.prepared.counter.tally(draw, index))
+        return tally
+
+    def read(self, state: dict[str, Any]) -> Tally:
+        """Return the tally that `Tally.to_dict` wrote."""
+        return Tally.from_dict(state, self.prepared.counter.empty().watch)
+
+    def verdict(self, tally: Tally) -> Verdict:
+        """Judge a tally: with all batches by the whole of alpha, with fewer only what is beyond doubt."""
+        whole = tally.drawn == self.prepared.samples
+        look = self.looks[-1] if whole else Stage(tally.drawn, EARLY, final=False)
+        findings = self._judged(tally, look)
+        if not whole and all(f.outcome != "rejected" for f in findings):
+            message = f"{len(tally.batches)} of {self.batches} batches are drawn"
+            findings.append(Finding("all batches", "inconclusive", message))
+        return self._verdict(findings, tally)
+
+    def run(self) -> Verdict:
+        """Draw and judge, look by look, until something is rejected or nothing is doubtful."""
+        tally, findings = self.prepared.counter.empty(), []
+        for look in self.looks:
+            wanted = range(len(tally.batches), _batches_for(look.samples, self.prepared.samples))
+            tally = tally.merged(self.tally(wanted))
+            findings = self._judged(tally, look)
             rejected = any(f.outcome == "rejected" for f in findings)
-            if rejected or (look.final and not doubtful(findings, alpha * look.share)):
+            if rejected or (look.final and not doubtful(findings, self.alpha * look.share)):
                 break
-    settings = {
-        "domain": repr(domain),
-        "dimensions": dimensions,
-        "precision": precision,
-        "tests": sum(f.alpha is not None for f in findings),
-        "looks": [look.samples for look in looks],
-    }
-    reproduce = (
-        f"check_sampler({_name(sample)}, {_name(pdf)}, {domain!r}, dimensions={dimensions}, ..., samples={samples},"
-        f" alpha={alpha:g}, seed={seed})"
-    )
-    cause = likely_cause(findings)
-    return Verdict(tuple(findings), alpha, tally.drawn, seed, time.perf_counter() - started, settings, cause, reproduce)
+        return self._verdict(findings, tally)
+
+    def _judged(self, tally: Tally, look: Stage) -> list[Finding]:
+        with np.errstate(all="ignore"):
+            return judge(self.prepared.refined(tally), tally, self.alpha * look.share, look.final)
+
+    def _verdict(self, findings: list[Finding], tally: Tally) -> Verdict:
+        subject = self.prepared.subject
+        settings = {
+            "domain": repr(subject.domain),
+            "dimensions": subject.dimensions,
+            "precision": subject.precision,
+            "tests": sum(f.alpha is not None for f in findings),
+            "looks": [look.samples for look in self.looks],
+        }
+        reproduce = (
+            f"check_sampler({_name(subject.sample)}, {_name(subject.pdf)}, {subject.domain!r},"
+            f" dimensions={subject.dimensions}, ..., samples={self.prepared.samples}, alpha={self.alpha:g},"
+            f" seed={self.seed})"
+        )
+        seconds = time.perf_counter() - self.started
+        cause = likely_cause(findings)
+        return Verdict(tuple(findings), self.alpha, tally.drawn, self.seed, seconds, settings, cause, reproduce)
 
 
-def drawn(prepared: Prepared, tally: Tally, samples: int, seed: int) -> Tally:
-    """Return the tally with more batches drawn, until it has `samples` samples."""
-    sizes = batch_sizes(prepared.samples)
-    index = 0
-    before = 0
-    while before < tally.drawn:
-        before += sizes[index]
-        index += 1
-    while tally.drawn < samples:
-        draw = prepared.subject.draw(batch_generator(seed, "samples", 1, index), sizes[index])
-        tally = tally.merged(prepared.counter.tally(draw, index))
-        index += 1
-    return tally
+def _batches_for(samples: int, most: int) -> int:
+    """Return how many of the batches that make up `most` samples hold `samples` of them."""
+    return int(np.searchsorted(np.cumsum(batch_sizes(most)), samples)) + 1
 
 
 def judge(prepared: Prepared, tally: Tally, alpha: float, final: bool = True) -> list[Finding]:
@@ -180,8 +247,12 @@ def tests_of(prepared: Prepared, tally: Tally) -> list[Test]:
         data = tally.weights or (Moments(),) * len(claims)
         for channel, claimed in enumerate(claims.tolist()):
             name = "mean weight" if len(claims) == 1 else f"mean weight of channel {channel}"
-            add("mean weight", mean_test, name, name, data[channel], claimed, 1e-6 * abs(claimed))
+            add("mean weight", _mean_weight, name, data[channel], claimed)
     return tests
+
+
+def _mean_weight(name: str, data: Moments, claimed: float, alpha: float) -> Finding:
+    return mean_test(name, name, data, claimed, 1e-6 * abs(claimed), alpha, "wrong weight")
 
 
 def _illustrated(prepared: Prepared, tally: Tally, findings: list[Finding]) -> list[Finding]:

@@ -22,12 +22,14 @@ from fogproof.checks.serial import Successions
 from fogproof.checks.streams import BATCH
 from fogproof.checks.subject import Subject
 from fogproof.contracts import Draw
+from fogproof.errors import InvalidValueError
 
 
 @dataclass(frozen=True)
 class Tally:
     """Counts of samples.
 
+    batches  numbers of the batches that it is of, increasing
     drawn    samples drawn, whatever became of them
     fine     for each axis, (m,) samples of the continuous part in each fine cell
     plane    (size, size) of them in each cell of the plane, or None
@@ -40,6 +42,7 @@ class Tally:
     watch    what was seen of each promise
     """
 
+    batches: tuple[int, ...]
     drawn: int
     fine: tuple[np.ndarray, ...]
     plane: np.ndarray | None
@@ -57,17 +60,22 @@ class Tally:
         return int(self.fine[0].sum())
 
     def merged(self, other: Tally) -> Tally:
-        """Return the tally of both, `self` being of the earlier batches."""
+        """Return the tally of both; the batches of `self` come first."""
         if other.drawn == 0:
             return self
         if self.drawn == 0:
             return other
+        if self.batches[-1] >= other.batches[0]:
+            raise InvalidValueError(
+                "batches", "must be merged in order and only once", (self.batches[-1], other.batches[0])
+            )
         plane = None if self.plane is None or other.plane is None else self.plane + other.plane
         serial = self.serial.merged(other.serial) if self.serial and other.serial else self.serial or other.serial
         low = np.minimum(self.extremes[:, 0], other.extremes[:, 0])
         high = np.maximum(self.extremes[:, 1], other.extremes[:, 1])
         weights = tuple(a.merged(b) for a, b in zip(self.weights, other.weights, strict=True))
         return Tally(
+            self.batches + other.batches,
             self.drawn + other.drawn,
             tuple(a + b for a, b in zip(self.fine, other.fine, strict=True)),
             plane,
@@ -84,6 +92,7 @@ class Tally:
         """Return the JSON-ready form."""
         serial = self.serial
         return {
+            "batches": list(self.batches),
             "drawn": self.drawn,
             "fine": [_packed(counts) for counts in self.fine],
             "plane": None if self.plane is None else _packed(self.plane),
@@ -105,6 +114,7 @@ class Tally:
         serial = state["serial"]
         broken = {name: (count, example) for name, (count, example) in state["broken"].items()}
         return Tally(
+            tuple(state["batches"]),
             state["drawn"],
             tuple(_unpacked(text) for text in state["fine"]),
             None if state["plane"] is None else _unpacked(state["plane"]),
@@ -142,6 +152,7 @@ class Counter:
         k = len(self.grid.marginals)
         plane = self.grid.plane
         return Tally(
+            (),
             0,
             tuple(np.zeros(len(m.mass), dtype=np.int64) for m in self.grid.marginals),
             None if plane is None else np.zeros((plane.size, plane.size), dtype=np.int64),
@@ -182,7 +193,7 @@ class Counter:
         if draw.weight is not None:
             columns = draw.weight.reshape(len(draw.x), -1).T
             weights = tuple(Moments.of(np.ascontiguousarray(column)) for column in columns)
-        return Tally(len(draw.x), fine, plane, extremes, hits, serial, prints, weights, strange[:4096], watch)
+        return Tally((index,), len(draw.x), fine, plane, extremes, hits, serial, prints, weights, strange[:4096], watch)
 
 
 def _successions(state: list[Any]) -> Successions:

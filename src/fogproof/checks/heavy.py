@@ -1,0 +1,52 @@
+"""Heavy tails: may the variance of what was sampled be infinite?
+
+Hill's (1975) estimate of the tail index from the largest deviations: with an index below 2 the variance is infinite, standard errors
+mean nothing, and a mean that looks right or wrong may be neither.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+_KEPT = 1024
+_LEAST = 64
+_SURE = 3.3  # standard errors of the estimate
+
+
+@dataclass(frozen=True)
+class Tail:
+    """The largest deviations |x - centre| of a stream of numbers, in no order."""
+
+    centre: float
+    largest: np.ndarray = field(default_factory=lambda: np.empty(0))
+    n: int = 0
+
+    def after(self, x: np.ndarray) -> Tail:
+        """Return the tail after the numbers x (n,)."""
+        both = np.concatenate([self.largest, np.abs(x - self.centre)])
+        if len(both) > _KEPT:
+            both = np.partition(both, len(both) - _KEPT)[-_KEPT:]
+        return Tail(self.centre, both, self.n + len(x))
+
+    def index(self) -> tuple[float, float]:
+        """Return Hill's estimate of the tail index and its standard error; (inf, 0) where there are too few numbers.
+
+        Of a thousandth of the sample, 64 numbers at least: the bulk must not be taken for the tail.
+        """
+        k = int(np.clip(self.n // 1000, _LEAST, _KEPT - 1))
+        if self.n < 50 * _LEAST or len(self.largest) <= k:
+            return math.inf, 0.0
+        top = np.sort(self.largest)[::-1][: k + 1]
+        if not top[-1] > 0:
+            return math.inf, 0.0
+        mean = float(np.mean(np.log(top[:-1] / top[-1])))
+        index = 1 / mean if mean > 0 else math.inf
+        return index, index / math.sqrt(k)
+
+    def suspect(self) -> bool:
+        """Whether the variance is infinite as far as the largest deviations tell."""
+        index, error = self.index()
+        return index + _SURE * error < 2
