@@ -1,8 +1,8 @@
 """`compare_estimators`: do two estimators have the same expectation, where nobody knows it?
 
-Welch's test (1947) of two means with unequal variances, its far tail corrected for skewness as for one mean. Two estimators that hit
-or miss the same values are compared exactly: given the hits of both together, those of the first are hypergeometric, and a binomial
-law bounds that.
+Welch's test (1947) of two means with unequal variances, its far tail corrected for skewness as for one mean. Two estimators that
+hit or miss the same values are compared exactly: given the hits of both together, those of the first are hypergeometric, and a
+binomial law bounds that.
 """
 
 from __future__ import annotations
@@ -91,9 +91,8 @@ def difference_test(name: str, a: Moments, b: Moments, alpha: float) -> Finding:
         more = "" if same else "; neither varies: ask for more samples, or compare the numbers"
         return Finding(name, outcome, message + more, effect=effect, resolution=resolution)
     if exact:
-        assert values is not None and a.values is not None and b.values is not None
-        high = max(values)
-        hits = a.values.get(high, 0), b.values.get(high, 0)
+        high = max(values or ())
+        hits = (a.values or {}).get(high, 0), (b.values or {}).get(high, 0)
         rarer = hits if sum(hits) <= a.n else (a.n - hits[0], b.n - hits[1])
         p, z = binomial_p(rarer[0], sum(rarer), 0.5, 0.5), effect / stderr
         message += " (exact test of hits)"

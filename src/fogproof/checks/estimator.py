@@ -1,7 +1,7 @@
 """`check_estimator`: is the mean of an estimator its reference, and are variance, cost and standard errors what theory says?
 
-Means are tested exactly where they can be, by Student's law where skewness allows it, and otherwise by tests that hold for every law;
-where none of them can tell, or the variance may be infinite, the verdict is inconclusive and says so.
+Means are tested exactly where they can be, by Student's law where skewness allows it, and otherwise by tests that hold for every
+law; where none of them can tell, or the variance may be infinite, the verdict is inconclusive and says so.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from fogproof.checks.quantities import Quantity, quantities_of
 from fogproof.checks.streams import batch_generator, batch_sizes, fresh_seed
 from fogproof.checks.subject import call
 from fogproof.checks.tails import normal_quantile
-from fogproof.checks.verdict import Finding, Resolution, Verdict, jsonable
+from fogproof.checks.verdict import Finding, Outcome, Resolution, Verdict, jsonable
 from fogproof.contracts import Draws, Reference
 from fogproof.errors import SubjectError
 from fogproof.validate import number
@@ -141,8 +141,13 @@ def _in_decades(n: int) -> list[int]:
 def _joined(parts: list[Draws]) -> Draws:
     if len(parts) == 1:
         return parts[0]
-    columns = zip(*parts, strict=True)
-    return Draws(*(None if column[0] is None else np.concatenate(column) for column in columns))
+
+    def column(name: str) -> np.ndarray | None:
+        found = [getattr(part, name) for part in parts]
+        return None if found[0] is None else np.concatenate(found)
+
+    value = np.concatenate([part.value for part in parts])
+    return Draws(value, column("cost"), column("order"), column("stderr"))
 
 
 @dataclass(frozen=True)
@@ -243,7 +248,7 @@ def _zero_variance(name: str, data: Moments, value: float, error: float) -> Find
     gap = max(abs(data.low - value), abs(data.high - value))
     wrong = not gap <= error + 1e-12 * abs(value)
     message = f"every realisation must be {value:.15g}; they lie in [{data.low:.15g}, {data.high:.15g}]"
-    outcome = "rejected" if wrong else "not rejected"
+    outcome: Outcome = "rejected" if wrong else "not rejected"
     return Finding(name, outcome, message, effect=gap, cause="bias" if wrong else "")
 
 

@@ -1,7 +1,7 @@
 """Heavy tails: may the variance of what was sampled be infinite?
 
-Hill's (1975) estimate of the tail index from the largest deviations: with an index below 2 the variance is infinite, standard errors
-mean nothing, and a mean that looks right or wrong may be neither.
+Hill's (1975) estimate of the tail index from the largest deviations: with an index below 2 the variance is infinite, standard
+errors mean nothing, and a mean that looks right or wrong may be neither.
 """
 
 from __future__ import annotations

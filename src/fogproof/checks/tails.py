@@ -24,7 +24,7 @@ def binomial_at_most(count: int, n: int, p: float) -> float:
     if count < 0:
         return 0.0
     tail = float(betaincc(count + 1, n - count, p))
-    return tail if tail > _TINY or p <= 0 else _binomial_far(n - count, n, 1 - p, p)
+    return tail if tail > _TINY or not 0 < p < 1 else _binomial_far(n - count, n, 1 - p, p)
 
 
 def binomial_at_least(count: int, n: int, p: float) -> float:
@@ -36,7 +36,7 @@ def binomial_at_least(count: int, n: int, p: float) -> float:
     if count > n:
         return 0.0
     tail = float(betainc(count, n - count + 1, p))
-    return tail if tail > _TINY or p <= 0 else _binomial_far(count, n, p, 1 - p)
+    return tail if tail > _TINY or not 0 < p < 1 else _binomial_far(count, n, p, 1 - p)
 
 
 def _binomial_far(count: int, n: int, p: float, q: float) -> float:
@@ -44,8 +44,6 @@ def _binomial_far(count: int, n: int, p: float, q: float) -> float:
 
     The first term is Loader's (2000, "Fast and accurate computation of binomial probabilities").
     """
-    if q <= 0:
-        return 1.0
     rest = n - count
     if rest == 0:
         return math.exp(n * math.log(p) if p < 0.5 else n * math.log1p(-q))
