@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-_STAKES = 2.0 ** -np.arange(16)
+_STAKES = 2.0 ** -np.arange(1, 17)  # less than all of the wealth: nothing is lost for good
 _THETAS = np.array([0.5, 1.0, 2.0])
 
 

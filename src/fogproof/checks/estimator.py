@@ -17,7 +17,7 @@ from fogproof.checks.bets import Bets
 from fogproof.checks.coverage import Coverage, coverage_test
 from fogproof.checks.dependence import Succession, repeated_stretches, runs_test
 from fogproof.checks.diagnosis import likely_cause
-from fogproof.checks.escalation import stages
+from fogproof.checks.escalation import EARLY, stages
 from fogproof.checks.heavy import Tail
 from fogproof.checks.means import Moments, mean_test, trusted
 from fogproof.checks.quantities import Quantity, quantities_of
@@ -71,24 +71,30 @@ def check_estimator(
     source = _Source(draw, seed, samples, _channels_of(reference))
     record: _Record | None = None
     findings: list[Finding] = []
-    looks = {look.samples: look for look in stages(samples, None, alpha, 1.0)}
+    looks = [look.samples for look in stages(samples, None, alpha, 1.0)]
     drawn = 0
-    for index, (draws, n) in enumerate(source.batches()):
+    for draws, n in source.batches():
         if record is None:
             record = _Record.of(quantities_of(reference, variance, cost, draws.stderr is not None), draws)
         record = record.after(draws, n)
         drawn += n
-        due = [look for size, look in looks.items() if drawn - n < size <= drawn]
-        if record.bad or (due and (not due[-1].final or index == source.last)):
-            findings = _judged(record, source, alpha * (due[-1].share if due else 1.0), drawn == samples)
-            if any(f.outcome == "rejected" for f in findings):
+        due = any(drawn - n < size <= drawn for size in looks)
+        if record.bad or due or drawn == samples:
+            findings = _judged(record, source, alpha, drawn == samples)
+            if drawn < samples and _beyond_doubt(findings):
                 break
     assert record is not None
-    settings = {"channels": source.channels, "looks": sorted(looks)}
+    settings = {"channels": source.channels, "looks": looks}
     name = getattr(draw, "__qualname__", type(draw).__name__)
     reproduce = f"check_estimator({name}, ..., samples={samples}, alpha={alpha:g}, seed={seed})"
     cause = likely_cause(findings)
     return Verdict(tuple(findings), alpha, drawn, seed, time.perf_counter() - started, settings, cause, reproduce)
+
+
+def _beyond_doubt(findings: list[Finding]) -> bool:
+    """Return whether an early look may stop: at a failure without statistics, or a p-value far below any share of alpha."""
+    rejected = [f for f in findings if f.outcome == "rejected"]
+    return any(f.p_value is None or f.p_value <= EARLY * (f.alpha or 1.0) for f in rejected)
 
 
 def _channels_of(reference: Reference | Mapping[int, Reference]) -> int:
@@ -104,10 +110,6 @@ class _Source:
     seed: int
     samples: int
     channels: int
-
-    @property
-    def last(self) -> int:
-        return len(batch_sizes(self.samples)) - 1
 
     def batches(self) -> Iterator[tuple[Draws, int]]:
         """Yield all batches; the first is drawn in calls of 1, 9, 90, ... realisations."""

@@ -31,12 +31,12 @@ class Tail:
             both = np.partition(both, len(both) - _KEPT)[-_KEPT:]
         return Tail(self.centre, both, self.n + len(x))
 
-    def index(self) -> tuple[float, float]:
+    def index(self, part: int = 1) -> tuple[float, float]:
         """Return Hill's estimate of the tail index and its standard error; (inf, 0) where there are too few numbers.
 
-        Of a thousandth of the sample, 64 numbers at least: the bulk must not be taken for the tail.
+        Of a thousandth of the sample, 64 numbers at least, or of 1/`part` of that: the bulk must not be taken for the tail.
         """
-        k = int(np.clip(self.n // 1000, _LEAST, _KEPT - 1))
+        k = int(np.clip(self.n // 1000, _LEAST, _KEPT - 1)) // part
         if self.n < 50 * _LEAST or len(self.largest) <= k:
             return math.inf, 0.0
         top = np.sort(self.largest)[::-1][: k + 1]
@@ -47,6 +47,10 @@ class Tail:
         return index, index / math.sqrt(k)
 
     def suspect(self) -> bool:
-        """Whether the variance is infinite as far as the largest deviations tell."""
+        """Whether the variance is infinite as far as the largest deviations tell.
+
+        A power law has the same index further out; a few outliers above a bulk have not.
+        """
         index, error = self.index()
-        return index + _SURE * error < 2
+        further, _ = self.index(4)
+        return index + _SURE * error < 2 and 0.5 < further / index < 2
