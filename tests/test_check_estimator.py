@@ -60,7 +60,7 @@ SKEWED_VARIANCE = 1e4 * (1 + 0.2**2 / 12) - 1
 LAWLESS = [
     ("exact variance", skewed, ref(1.0), {"variance": SKEWED_VARIANCE}, "not rejected", "Catoni"),
     ("exact variance, wrong mean", skewed, ref(9.0), {"variance": SKEWED_VARIANCE}, "rejected", "betting"),
-    ("far too large", lambda rng, n: 30 * skewed(rng, n), ref(1.0), {}, "rejected", "not negative"),
+    ("far too large", lambda rng, n: 1000 * skewed(rng, n), ref(1.0), {}, "rejected", "not negative"),
     ("far too small", lambda rng, n: 0.1 * skewed(rng, n), ref(1.0), {}, "inconclusive", "too skewed"),
 ]
 
@@ -79,7 +79,7 @@ def test_an_infinite_variance_is_named_and_a_finite_one_is_not():
     def message(draw, reference):
         return next(f.message for f in check_estimator(draw, reference, samples=N).findings if f.check == "mean")
 
-    assert "infinite variance suspected" in message(lambda rng, n: rng.pareto(1.5, n), ref(2.0))
+    assert "infinite variance suspected" in message(lambda rng, n: rng.pareto(1.1, n), ref(10.0))
     for draw, mean in ((exponential, 1.0), (lambda rng, n: rng.lognormal(0, 1, n), np.exp(0.5)), (rare, 1e-4)):
         assert "infinite variance" not in message(draw, ref(mean))
 
