@@ -131,6 +131,114 @@ WRONG = {
 }  # fmt: skip
 
 
+def float32_cosine(u):
+    """The inverse of a Henyey-Greenstein cdf with g = 1e-6, which cancels in single precision."""
+    g = u.dtype.type(1e-6)
+    s = (1 - g * g) / (1 - g + 2 * g * u[:, 0])
+    return np.clip((1 + g * g - s * s) / (2 * g), -1, 1)
+
+
+def one_azimuth(u):
+    x = sphere(u)
+    phi = 2 * np.pi * u[0, 1]
+    s = np.hypot(x[:, 0], x[:, 1])
+    return np.stack([s * np.cos(phi), s * np.sin(phi), x[:, 2]], axis=-1)
+
+
+def threaded(u):
+    """The azimuth turns 2400 times with the cosine: both marginals are right, and the samples fill a curve."""
+    return sphere(np.stack([u[:, 0], 2400 * u[:, 0] % 1], axis=-1))
+
+
+def surface(u):
+    t = -np.log1p(-u[:, 0])
+    return np.minimum(t, 1.0), t >= 1
+
+
+SEEN = {
+    "a skipped band": (
+        "interval", {"sample": lambda u: 2 + 3 * np.where(np.abs(u[:, 0] - 0.4) < 1e-3, u[:, 1], u[:, 0]), "dimensions": 2},
+        "scan", "skipped band"),
+    "a lost tail": ("interval", {"sample": lambda u: 2 + 3 * 0.998 * u[:, 0]}, "ends", "missing tail"),
+    "an undeclared atom": (
+        "interval", {"sample": lambda u: np.where(u[:, 1] < 1e-3, 2.7, 2 + 3 * u[:, 0]), "dimensions": 2},
+        "repeated points", "atom"),
+    "a claimed hole": (
+        "interval", {"pdf": lambda x: np.where(np.abs(x - 3) < 1e-3, 0, 1 / (3 - 2e-3))}, "positive pdf", "claimed hole"),
+    "sorted samples": ("interval", {"sample": lambda u: 2 + 3 * np.sort(u[:, 0])}, "serial correlation", "dependent samples"),
+    "one azimuth a batch": ("sphere", {"sample": one_azimuth}, "serial correlation", "dependent samples"),
+    "a curve that fills the sphere": ("sphere", {"sample": threaded, "samples": 10 * N}, "chi-square, fine joint", "correlation"),
+    "few different numbers": (
+        "interval", {"sample": lambda u: 2 + 3 * np.floor(2**15 * u[:, 0]) / 2**15}, "repeated points", "atom"),
+    "the wrong measure": ("sphere", {"pdf": lambda x: np.full(len(x), 0.5)}, "normalisation", "wrong measure"),
+    "cancellation": (
+        "single precision", {"sample": float32_cosine}, "single against double precision", "cancellation"),
+    "weights too small": (
+        "weights", {"sample": lambda u: Draw(u[:, 0], weight=0.5 * u[:, 0]), "eval": None}, "mean weight", "wrong weight"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", SEEN)
+def test_each_check_sees_its_error_and_names_its_kind(name):
+    base, changes, finding, cause = SEEN[name]
+    sample, pdf, domain, options = RIGHT[base]
+    arguments = {"sample": sample, "pdf": pdf, **options, **changes}
+    verdict = check_sampler(
+        arguments.pop("sample"), arguments.pop("pdf"), domain, **{"samples": 3 * N, "alpha": 1e-9, **arguments}
+    )
+    assert finding in [f.check for f in verdict.findings if f.outcome == "rejected"], str(verdict)
+    assert verdict.cause == cause, str(verdict)
+    assert f"seed={verdict.seed}" in verdict.reproduce
+
+
+def test_event_labels_belong_to_places():
+    def draw(u, wrong):
+        x, hit = surface(u)
+        return Draw(x, event=np.where(u[:, 1] < wrong, ~hit, hit).astype(int))
+
+    options = {"dimensions": 2, "atoms": {1.0: np.exp(-1)}, "samples": N}
+    right, wrong = (
+        check_sampler(lambda u, w=w: draw(u, w), lambda x: np.exp(-x), Interval(0, 1), **options) for w in (0, 1e-3)
+    )
+    assert right.outcome == "not rejected", str(right)
+    assert wrong.cause == "wrong event label"
+    alike = check_sampler(
+        lambda u: Draw(surface(u)[0], event=u[:, 1] < 2), lambda x: np.exp(-x), Interval(0, 1), **options
+    )
+    assert alike.cause == "wrong event label", "the same label at the surface and before it says nothing"
+
+
+def test_weights_of_several_channels():
+    colours = np.array([0.2, 0.5, 0.9])
+
+    def sample(u):
+        return Draw(u[:, 0], weight=2 * u[:, :1] * colours)
+
+    options = {"dimensions": 1, "eval": lambda x: 2 * x[:, None] * colours, "samples": N}
+    ones = lambda x: np.ones(len(x))  # noqa: E731
+    assert check_sampler(sample, ones, Interval(0, 1), albedo=tuple(colours), **options).outcome == "not rejected"
+    verdict = check_sampler(sample, ones, Interval(0, 1), albedo=(0.2, 0.51, 0.9), **options)
+    assert "albedo of channel 1" in [f.check for f in verdict.findings if f.outcome == "rejected"]
+    assert verdict.cause == "wrong weight"
+
+
+def test_every_rejection_has_a_place_a_size_and_a_figure():
+    _, pdf, domain, options = RIGHT["cosine hemisphere"]
+    verdict = check_sampler(sphere_up, pdf, domain, samples=N, **options)
+    worst = next(f for f in verdict.findings if f.check == "distribution of mu")
+    assert worst.outcome == "rejected"
+    assert "mu >" in worst.region[0]
+    assert worst.interval.low <= 0.25 <= worst.interval.high, "the largest distance is 1/4, at mu = 1/2"
+    assert worst.figure["kind"] == "z-map"
+    assert np.array(worst.figure["z"]).shape == tuple(len(e) - 1 for e in worst.figure["edges"])
+    assert "Effect in" in str(verdict)
+
+
+def sphere_up(u):
+    x = sphere(u)
+    return np.stack([x[:, 0], x[:, 1], np.abs(x[:, 2])], axis=-1)
+
+
 @pytest.mark.parametrize("name", WRONG)
 def test_wrong_samplers_are_rejected_by_the_check_that_sees_them(name):
     base, changes, finding = WRONG[name]
@@ -171,6 +279,9 @@ def test_flipped_in_both_is_seen_by_the_declared_mean_cosine_and_by_the_referenc
     assert unseen.outcome == "not rejected", "without a declaration nothing is wrong with it"
     for declared in ({"mean_cosine": 1 / 6}, {"reference": reference}):
         assert check_sampler(flipped, flipped_pdf, UnitSphere(), **options, **declared).outcome == "rejected"
+    both = check_sampler(flipped, flipped_pdf, UnitSphere(), mean_cosine=1 / 6, **options)
+    one = check_sampler(flipped, pdf, UnitSphere(), **options)
+    assert both.cause == one.cause == "sign convention", f"{both}\n{one}"
 
 
 def test_the_same_seed_gives_the_same_verdict_and_another_seed_another():

@@ -23,6 +23,7 @@ CAUSES = (
     "wrong probability of an atom",
     "wrong formula",
     "cancellation",
+    "dependent samples",
     "atom",
     "missing tail",
     "skipped band",

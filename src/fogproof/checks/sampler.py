@@ -12,7 +12,8 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
+from itertools import pairwise
 from typing import Any, get_args
 
 import numpy as np
@@ -124,17 +125,23 @@ class SamplerCheck:
         weight = total_weight(tests_of(prepared, prepared.counter.empty()))
         return SamplerCheck(prepared, stages(samples, resolution, alpha, weight), alpha, seed, started)
 
+    @cached_property
+    def sizes(self) -> list[int]:
+        """The sizes of all batches: every look comes at the end of one."""
+        ends = [look.samples for look in self.looks]
+        return [size for start, end in pairwise([0, *ends]) for size in batch_sizes(end - start)]
+
     @property
     def batches(self) -> int:
         """How many batches make up the largest number of samples."""
-        return len(batch_sizes(self.prepared.samples))
+        return len(self.sizes)
 
     def tally(self, batches: Iterable[int]) -> Tally:
         """Draw and count the given batches, increasing numbers below `batches`."""
-        sizes, tally = batch_sizes(self.prepared.samples), self.prepared.counter.empty()
+        tally = self.prepared.counter.empty()
         with np.errstate(all="ignore"):
             for index in batches:
-                draw = self.prepared.subject.draw(batch_generator(self.seed, "samples", 1, index), sizes[index])
+                draw = self.prepared.subject.draw(batch_generator(self.seed, "samples", 1, index), self.sizes[index])
                 tally = tally.merged(self.prepared.counter.tally(draw, index))
         return tally
 
@@ -156,8 +163,8 @@ class SamplerCheck:
         """Draw and judge, look by look, until something is rejected or nothing is doubtful."""
         tally, findings = self.prepared.counter.empty(), []
         for look in self.looks:
-            wanted = range(len(tally.batches), _batches_for(look.samples, self.prepared.samples))
-            tally = tally.merged(self.tally(wanted))
+            enough = int(np.searchsorted(np.cumsum(self.sizes), look.samples)) + 1
+            tally = tally.merged(self.tally(range(len(tally.batches), enough)))
             findings = self._judged(tally, look)
             rejected = any(f.outcome == "rejected" for f in findings)
             if rejected or (look.final and not doubtful(findings, self.alpha * look.share)):
@@ -185,11 +192,6 @@ class SamplerCheck:
         seconds = time.perf_counter() - self.started
         cause = likely_cause(findings)
         return Verdict(tuple(findings), self.alpha, tally.drawn, self.seed, seconds, settings, cause, reproduce)
-
-
-def _batches_for(samples: int, most: int) -> int:
-    """Return how many of the batches that make up `most` samples hold `samples` of them."""
-    return int(np.searchsorted(np.cumsum(batch_sizes(most)), samples)) + 1
 
 
 def judge(prepared: Prepared, tally: Tally, alpha: float, final: bool = True) -> list[Finding]:

@@ -17,6 +17,8 @@ from fogproof.checks.grid import Marginal, Plane
 from fogproof.checks.tails import binomial_interval
 from fogproof.checks.verdict import Finding, Interval, Resolution
 
+_SKIPPED = 0.5  # of the expected number of samples: a place with fewer is one that is avoided
+
 
 @dataclass(frozen=True)
 class _Place:
@@ -132,7 +134,7 @@ def scan_plane(name: str, labels: tuple[str, str], plane: Plane, counts: np.ndar
     place = " and ".join(
         f"share {k / size:.4g} to {(k + 1) / size:.4g} of {label}" for k, label in zip(where, labels, strict=True)
     )
-    return _finding(name, best, n, alpha, place, resolution, finest, True)
+    return _finding(name, best, n, alpha, place, resolution, finest, False)
 
 
 def blocks(values: np.ndarray, size: int) -> np.ndarray:
@@ -166,7 +168,7 @@ def _finding(
         message = f"no place has too many or too few samples; {message}"
     cause = ""
     if rejected:
-        cause = "skipped band" if best.observed == 0 else "shape"
+        cause = "skipped band" if best.observed < _SKIPPED * n * best.probability else "shape"
         if atoms and direction == "more" and best.last - best.first == 1 and cells * best.probability < 4:
             cause = "atom"
     low, high = binomial_interval(best.observed, n, MISS)

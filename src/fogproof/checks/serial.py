@@ -13,10 +13,15 @@ import numpy as np
 from fogproof.checks.tails import chi_square_above
 from fogproof.checks.verdict import Finding, Outcome
 
+_UNIT = 2.0**15
+_STRONG = 0.5  # a correlation that leaves little of the sample
+
 
 @dataclass(frozen=True)
 class Successions:
-    """Sums over the scores (n, k) of one stream of samples, less their claimed mean 1/2.
+    """Sums over the scores (n, k) of one stream of samples, less their claimed mean 1/2, in whole units of 2^-15.
+
+    Whole numbers add up to the same in any order: batches may be counted anywhere.
 
     sums      (k,) of the scores
     products  (k, k) of each sample's scores with the next one's
@@ -33,7 +38,7 @@ class Successions:
     @staticmethod
     def of(scores: list[np.ndarray]) -> Successions:
         """Return the sums of one batch; scores are (n,) for each axis."""
-        d = [score - 0.5 for score in scores]
+        d = [np.rint((score - 0.5) * _UNIT).astype(np.int64) for score in scores]
         n = len(d[0])
         sums = np.array([one.sum() for one in d])
         products = np.array([[np.einsum("i,i->", one[:-1], other[1:]) for other in d] for one in d])
@@ -57,12 +62,12 @@ def serial_test(name: str, sums: Successions | None, alpha: float) -> Finding:
     if sums is None:
         return none
     k = len(sums.products)
-    mean = sums.sums / max(sums.n, 1)
-    covariance = sums.squares / max(sums.n, 1) - np.outer(mean, mean)
+    mean = sums.sums / (max(sums.n, 1) * _UNIT)
+    covariance = sums.squares / (max(sums.n, 1) * _UNIT**2) - np.outer(mean, mean)
     if sums.pairs < 100 or not np.linalg.det(covariance) > 1e-12 * (1 / 12) ** k:
         return none
     inverse = np.linalg.inv(covariance)
-    r = sums.products / sums.pairs - np.outer(mean, mean)
+    r = sums.products / (sums.pairs * _UNIT**2) - np.outer(mean, mean)
     statistic = float(sums.pairs * np.trace(inverse @ r @ inverse @ r.T))
     p = chi_square_above(k * k, statistic)
     rejected = p <= alpha
@@ -72,4 +77,5 @@ def serial_test(name: str, sums: Successions | None, alpha: float) -> Finding:
     largest = float(coefficient.flat[np.argmax(np.abs(coefficient))])
     message = f"correlation of successive samples is {largest:+.3g}"
     exact = sums.pairs >= 1000
-    return Finding(name, outcome, message, p, alpha, exact, statistic, largest, cause="correlation" if rejected else "")
+    cause = "dependent samples" if abs(largest) > _STRONG else "correlation"
+    return Finding(name, outcome, message, p, alpha, exact, statistic, largest, cause=cause if rejected else "")
