@@ -172,9 +172,9 @@ def chi_square_sparse(name: str, counts: np.ndarray, mass: np.ndarray, blur: np.
     if n == 0:
         return nothing_counted(name, alpha)
     expected = n * mass
-    excess = np.maximum(np.abs(counts - expected) - n * blur, 0.0)
     exact = bool(np.all(n * blur <= _EXACT * np.sqrt(expected)))
-    statistic = float(np.sum((counts - expected if exact else excess) ** 2 / expected))
+    misfit = counts - expected if exact else np.maximum(np.abs(counts - expected) - n * blur, 0.0)
+    statistic = float(np.sum(misfit**2 / expected))
     cells = len(expected)
     inverse, slope = 1 / expected, cells / n
     variance = float(np.sum(2 + inverse)) - slope * cells

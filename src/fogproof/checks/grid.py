@@ -25,10 +25,11 @@ from fogproof.checks.lookup import Lookup
 from fogproof.checks.quadrature import NODES, Leaves
 
 _PER_CELL = 16  # samples expected in a fine cell
-_MOST_CELLS = {1: 1 << 18, 2: 1 << 16}
+_MOST_CELLS = {1: 1 << 17, 2: 1 << 16}
 _COARSE = 32  # cells along each axis of the plane
 _FINEST_PLANE = 512
 _INDEPENDENT = 1e-4  # axes are independent if no coarse cell differs by more than this share
+_NO_BLUR = 1e-12  # of probability: what double precision does
 _REGIONS = 64  # of an axis in which the effect of rounding is averaged
 _NUDGED = 2048  # points that show the effect of rounding
 
@@ -110,6 +111,8 @@ class Plane:
 
     def blur(self, size: int) -> np.ndarray:
         """Return (size, size) the probability that rounding moves into or out of each of as many cells."""
+        if max(float(edges.max()) for edges in self.blurs) < _NO_BLUR:
+            return np.zeros((size, size))
         step = self.size // size
         shares = [share.reshape(size, step).sum(axis=1) for share in self.shares]
         moved = [edges[::step][:-1] + edges[::step][1:] for edges in self.blurs]

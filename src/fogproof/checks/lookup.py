@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+_BLOCK = 1 << 14  # numbers at once: what is computed of them stays in the cache
 _BELOW_ONE = 1 - 2.0**-53
 _MOST_COMPARED = 3  # edges of one bucket that are compared one by one; fuller buckets are searched
 
@@ -48,10 +49,17 @@ class Lookup:
         crowded = filled > _MOST_COMPARED if most > _MOST_COMPARED else None
         following, first = np.append(inner, np.inf), np.cumsum(filled) - filled
         most = min(most, _MOST_COMPARED)
-        return Lookup(edges, following, scale, buckets, base, fine.astype(float), first, most, crowded)
+        small = [table.astype(np.int32) for table in (base, first)]  # they fit into the cache
+        return Lookup(edges, following, scale, buckets, small[0], fine.astype(np.float32), small[1], most, crowded)
 
     def __call__(self, t: np.ndarray) -> np.ndarray:
         """Return (n,) the cell of each t: the last i with edges[i] <= t, clipped to the cells that there are."""
+        found = np.empty(len(t), dtype=np.intp)
+        for start in range(0, len(t), _BLOCK):
+            found[start : start + _BLOCK] = self._find(t[start : start + _BLOCK])
+        return found
+
+    def _find(self, t: np.ndarray) -> np.ndarray:
         place = (np.clip(t, self.edges[0], self.edges[-1]) - self.edges[0]) * self.scale
         coarse = np.minimum(place.astype(np.intp), self.buckets - 1)
         bucket = self.base.take(coarse) + _sub(place, coarse, self.fine)

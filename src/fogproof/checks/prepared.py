@@ -18,6 +18,7 @@ from fogproof.checks.probes import cdf_agreement, edge_uniforms, precision_agree
 from fogproof.checks.promises import inside, usual_labels
 from fogproof.checks.quadrature import Leaves
 from fogproof.checks.repeats import KEPT, expected_repeats
+from fogproof.checks.serial import in_units
 from fogproof.checks.streams import batch_generator
 from fogproof.checks.subject import Subject, call, nudged, numbers
 from fogproof.checks.tally import Counter, Tally
@@ -168,7 +169,7 @@ def _counter(
     pilot: Pilot,
     fingerprinted: bool,
 ) -> Counter:
-    scores = tuple(m.scores for m in grid.marginals)
+    scores = tuple(in_units(m.scores) for m in grid.marginals)
     return Counter(subject, grid, count, ranges, pilot.labels, scores, fingerprinted)
 
 

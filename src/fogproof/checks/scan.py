@@ -56,7 +56,7 @@ def scan(name: str, marginal: Marginal, counts: np.ndarray, alpha: float) -> Fin
         place = _Place(p, int(start[i]), int(start[i]) + length, int(observed[i]), mass)
         best = place if place.beats(best, n) else best
     rivals = 2 * len(counts) * len(lengths)
-    resolution = Resolution(f"missing band in {marginal.label}", _smallest_band(n, alpha / rivals), MISS)
+    resolution = Resolution(f"missing band in {marginal.label}", _smallest_band(n, alpha / rivals, len(counts)), MISS)
     return _finding(name, best, n, alpha, between(marginal, best.first, best.last), resolution, len(counts), True)
 
 
@@ -110,35 +110,40 @@ def scan_plane(name: str, labels: tuple[str, str], plane: Plane, counts: np.ndar
     n = int(counts.sum())
     if n == 0:
         return nothing_counted(name, alpha)
-    coarse = len(plane.mass)
-    mass, error = plane.mass, plane.error
-    if plane.independent:
-        mass, error = plane.shares[0][:, None] * plane.shares[1], np.zeros(counts.shape)
-    else:
-        counts = blocks(counts, coarse)
-    levels = []
-    while len(counts) >= 4:
-        levels.append((counts, mass, error + plane.blur(len(counts))))
-        counts, mass, error = (blocks(values, len(values) // 2) for values in (counts, mass, error))
+    finest = len(counts) if plane.independent else len(plane.mass)
+    sizes = [finest >> level for level in range(finest.bit_length() - 2)]
     best, where, size = _Place(1.0, 0, 1, n, 1.0), (0, 0), 1
-    for observed, probability, slack in levels:
+    for cells in sizes:
+        observed = blocks(counts, cells)
+        probability, slack = _claimed(plane, cells)
         o, q, e = observed.ravel(), probability.ravel(), slack.ravel()
         i = _conspicuous(o, n * q, n * e)
-        p = binomial_p(int(o[i]), n, q[i] - e[i], q[i] + e[i]) * len(o) * len(levels)
+        p = binomial_p(int(o[i]), n, q[i] - e[i], q[i] + e[i]) * len(o) * len(sizes)
         if p < best.p:
-            best, where, size = _Place(p, 0, 1, int(o[i]), float(q[i])), divmod(i, len(observed)), len(observed)
-    finest = levels[0][0].size
+            best, where, size = _Place(p, 0, 1, int(o[i]), float(q[i])), divmod(i, cells), cells
     resolution = Resolution(
-        "missing patch (of equal shares of both axes)", 4 * _smallest_band(n, alpha / (finest * len(levels))), MISS
+        "missing patch (of equal shares of both axes)",
+        4 * _smallest_band(n, alpha / (finest**2 * len(sizes)), finest**2),
+        MISS,
     )
     place = " and ".join(
         f"share {k / size:.4g} to {(k + 1) / size:.4g} of {label}" for k, label in zip(where, labels, strict=True)
     )
-    return _finding(name, best, n, alpha, place, resolution, finest, False)
+    return _finding(name, best, n, alpha, place, resolution, finest**2, False)
+
+
+def _claimed(plane: Plane, cells: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the probabilities (cells, cells) of squares of the plane, and bounds on their errors."""
+    if plane.independent:
+        first, second = (share.reshape(cells, -1).sum(axis=1) for share in plane.shares)
+        return first[:, None] * second, plane.blur(cells)
+    return blocks(plane.mass, cells), blocks(plane.error, cells) + plane.blur(cells)
 
 
 def blocks(values: np.ndarray, size: int) -> np.ndarray:
     """Return the sums of square blocks of (n, n) values, (size, size)."""
+    if len(values) == size:
+        return values
     step = len(values) // size
     return values.reshape(size, step, size, step).sum(axis=(1, 3))
 
@@ -149,9 +154,9 @@ def _conspicuous(observed: np.ndarray, expected: np.ndarray, slack: np.ndarray) 
     return int(np.argmax(deviances(observed, kind)))
 
 
-def _smallest_band(n: int, p: float) -> float:
+def _smallest_band(n: int, p: float, cells: int) -> float:
     """Return the mass of a missing band that is found for sure: a third of it at least is an interval, which is then empty."""
-    return 3 * (math.log(2 / p) + 1) / n
+    return 3 * max((math.log(2 / p) + 1) / n, 1 / cells)
 
 
 def _finding(

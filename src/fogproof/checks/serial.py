@@ -36,9 +36,8 @@ class Successions:
     pairs: int
 
     @staticmethod
-    def of(scores: list[np.ndarray]) -> Successions:
-        """Return the sums of one batch; scores are (n,) for each axis."""
-        d = [np.rint((score - 0.5) * _UNIT).astype(np.int64) for score in scores]
+    def of(d: list[np.ndarray]) -> Successions:
+        """Return the sums of one batch; d holds the scores (n,) of each axis, in units, see `in_units`."""
         n = len(d[0])
         sums = np.array([one.sum() for one in d])
         products = np.array([[np.einsum("i,i->", one[:-1], other[1:]) for other in d] for one in d])
@@ -54,6 +53,11 @@ class Successions:
             self.n + other.n,
             self.pairs + other.pairs,
         )
+
+
+def in_units(scores: np.ndarray) -> np.ndarray:
+    """Return scores on (0, 1) less 1/2, in whole units."""
+    return np.rint((scores - 0.5) * _UNIT).astype(np.int64)
 
 
 def serial_test(name: str, sums: Successions | None, alpha: float) -> Finding:

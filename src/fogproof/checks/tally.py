@@ -135,7 +135,7 @@ class Counter:
     count   points -> one counted coordinate (n,) an axis
     ranges  what densities the quadrature knows in each cell
     labels  the usual event label of each place
-    scores  for each axis, the middle probability (m,) of each fine cell
+    scores  for each axis, the middle probability (m,) of each fine cell, in the units of serial correlation
     fingerprinted  whether repetitions mean anything
     """
 
