@@ -26,7 +26,7 @@ format: $(VENV)/.installed-lint  ## let ruff rewrite what it can
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 
-calibrate: $(VENV)/.installed-test  ## how often the checks reject what is right: 20 runs of the catalogue, 10^4 small verdicts
+calibrate: $(VENV)/.installed-test  ## how often the checks reject what is right; an hour, rewrites docs/calibration.md
 	$(BIN)/python tools/calibrate.py
 
 oracle-hard: $(VENV)/.installed-test  ## the airlight integral on 10^5 hard cases against ball arithmetic

@@ -1,18 +1,46 @@
-"""Right samplers are rejected as often as promised and no more: exact p-values are uniform, bounds never too small.
+"""Right subjects are rejected as often as promised and no more: exact p-values are uniform, bounds never too small.
 
-The short form of `tools/calibrate.py`. Fresh seeds; the bands are crossed with probability 1e-9.
+The short form of `tools/calibrate.py`. Fresh seeds; a band is crossed with probability 1e-9.
 """
 
-from calibrate import small_verdicts, too_small, uniformity
+import pytest
+from calibrate import LEVEL, RIGHT, SUBJECTS, estimator_tally, kind_of, sampler_tally, uniformity, whole_verdicts
 
-from fogproof.checks import fresh_seed
+from fogproof.checks import Finding, fresh_seed
 
 
-def test_p_values_of_right_samplers():
-    seed = fresh_seed()
-    p_values = small_verdicts(count=600, samples=4000, seed=seed)
-    assert p_values.rejected == 0, f"seed {seed}: {p_values.examples}"
-    assert len(p_values.exact) == 600
-    assert uniformity(p_values.exact) > 1e-9, f"seed {seed}"
-    for level in (1e-3, 1e-2, 0.1):
-        assert not too_small(p_values.bounds, level, 1e-9), f"seed {seed}, level {level}"
+def too_many(hits, n, level):
+    from scipy.special import bdtrc
+
+    return hits > 0 and bdtrc(hits - 1, n, level) < 1e-9
+
+
+def check(tally, seed):
+    for kind, n in tally.counted.items():
+        assert not too_many(tally.small[kind], n, LEVEL), f"{kind}: {tally.small[kind]} of {n}, seed {seed}"
+    for kind, values in tally.values.items():
+        if tally.exact[kind]:
+            assert uniformity(values) > 1e-9, f"{kind}, seed {seed}"
+
+
+@pytest.mark.parametrize("name", SUBJECTS)
+def test_p_values_of_right_samplers(name):
+    seed = fresh_seed() >> 2
+    check(sampler_tally(name, 60, 4000, seed), seed)
+
+
+def test_p_values_of_right_estimators():
+    seed = fresh_seed() >> 2
+    check(estimator_tally(100, 2000, seed), seed)
+
+
+@pytest.mark.parametrize("name", RIGHT)
+def test_right_samplers_pass_whole(name):
+    seed = fresh_seed() >> 2
+    assert whole_verdicts(name, 3, 100_000, seed) == {"not rejected": 3}, f"seed {seed}"
+
+
+def test_kinds_have_no_axis():
+    assert kind_of(Finding("chi-square in mu", "not rejected", "")) == "chi-square"
+    assert kind_of(Finding("dependence of the axes", "not rejected", "")) == "dependence of the axes"
+    assert kind_of(Finding("distribution of cdf of x", "not rejected", "")) == "distribution"
