@@ -131,7 +131,7 @@ def per_thread(rng, n):
 
 
 CORRELATED = [
-    ("successive ones", ar1, 0.0, "serial correlation"),
+    ("successive ones", ar1, 0.0, "correlation of realisations"),
     (
         "the same seed in every call",
         lambda rng, n: np.random.default_rng(1).normal(size=n),
@@ -139,7 +139,7 @@ CORRELATED = [
         "repeated realisations",
     ),
     ("the same seed in every thread", per_thread, 1.0, "repeated realisations"),
-    ("sorted", lambda rng, n: np.sort(rng.normal(size=n)), 0.0, "serial correlation"),
+    ("sorted", lambda rng, n: np.sort(rng.normal(size=n)), 0.0, "correlation of realisations"),
 ]
 
 

@@ -294,7 +294,7 @@ def page(tally: Tally, wholes: dict[tuple[str, int], Counter[str]], settings: st
         f"## p-values at or below {LEVEL:g}",
         "",
         "The band holds the count of a uniform p-value with probability 99.9 % over all kinds together. Exact p-values are",
-        "uniform; the others are upper bounds, whose counts may be smaller. `uniform` is the p-value of Kolmogorov's test of uniformity.",
+        "uniform; the others are upper bounds, whose counts may be smaller. `uniform` is the p-value of Kolmogorov's test of it.",
         "",
         "| kind of check | p-values | small | band | sort | uniform |",
         "|---|--:|--:|---|---|--:|",

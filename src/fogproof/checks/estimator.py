@@ -233,7 +233,7 @@ def _judged(record: _Record, source: _Source, alpha: float, complete: bool) -> l
     if covered:
         findings.append(coverage_test("coverage of standard errors", record.coverage, source.channels, share))
     if not fixed:
-        findings.append(runs_test("serial correlation", record.succession, _RUNS * alpha))
+        findings.append(runs_test("correlation of realisations", record.succession, _RUNS * alpha))
         stretches = repeated_stretches("repeated realisations", record.succession)
         findings += [] if stretches is None else [stretches]
     return findings
