@@ -14,7 +14,7 @@ verify: $(VENV)/.installed  ## every sampler and estimator against its reference
 	$(BIN)/fogproof verify --report build/report
 
 test: $(VENV)/.installed-test  ## the project's own tests
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest --numprocesses auto
 
 lint: $(VENV)/.installed-lint  ## ruff, mypy and the import contracts
 	$(BIN)/ruff check .
