@@ -4,6 +4,9 @@ PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 
+# Runs keep all cores busy with work of their own; threads inside small matrix products would only wait for each other.
+export OPENBLAS_NUM_THREADS := 1
+
 .DEFAULT_GOAL := help
 .PHONY: help verify test lint format calibrate repeat oracle-hard golden bench clean
 
