@@ -82,7 +82,7 @@ class Plan(NamedTuple):
 
     albedo    sigma_s / sigma_t of the medium
     emission  L_e of the medium [W/(m^2 sr)]
-    index     refractive index of the medium, 1 if its boundary does not reflect
+    eta       refractive index of the medium, 1 if its boundary does not reflect
     look      whether a collision looks for the light
     meet      whether light that a scattered path meets by itself counts; with both, each by its share
     deepest   scattering order at which paths end
@@ -94,7 +94,7 @@ class Plan(NamedTuple):
 
     albedo: float
     emission: float
-    index: float
+    eta: float
     look: bool
     meet: bool
     deepest: int

@@ -94,7 +94,7 @@ def trace(
             # What comes next: a collision between start and stop, the boundary, the wall, or nothing any more.
             end = reach(wall, x, y, z, dx, dy, dz, on_wall)
             enter, leave = crossing(region, x, y, z, dx, dy, dz)
-            if plan.index == 1.0:
+            if plan.eta == 1.0:
                 start, stop, boundary = max(enter, 0.0), min(leave, end), np.inf
             elif inside:
                 start, stop, boundary = 0.0, min(leave, end), leave
@@ -134,7 +134,7 @@ def trace(
             elif boundary < end:
                 x, y, z = x + boundary * dx, y + boundary * dy, z + boundary * dz
                 nx, ny, nz = outward(region, x, y, z)
-                ratio = plan.index
+                ratio = plan.eta
                 if not inside:
                     nx, ny, nz, ratio = -nx, -ny, -nz, 1.0 / ratio
                 cosine = abs(dx * nx + dy * ny + dz * nz)
@@ -164,10 +164,8 @@ def trace(
             # A collision, or a reflection off a diffuse wall with the normal n.
             if plan.look and lamp.kind != DARK:
                 wx, wy, wz, distance, arriving = towards(rng, lamp, x, y, z)
-                if hit:
-                    density = phase_density(lobe, dx * wx + dy * wy + dz * wz)
-                else:
-                    density = max(0.0, wx * nx + wy * ny + wz * nz) / np.pi
+                along_n, along_d = wx * nx + wy * ny + wz * nz, wx * dx + wy * dy + wz * dz
+                density = phase_density(lobe, along_d) if hit else max(0.0, along_n) / np.pi
                 if density > 0.0 and reach(wall, x, y, z, wx, wy, wz, on_wall) >= distance:
                     enter, leave = crossing(region, x, y, z, wx, wy, wz)
                     start, stop = max(enter, 0.0), min(leave, distance)

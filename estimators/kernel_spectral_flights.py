@@ -51,9 +51,7 @@ def _fly_uniform(
     hit = t < length
     t = min(t, length)
     for c in range(len(density)):
-        more = (
-            sigma[c] - sigma[hero]
-        )  # than the hero: what they share cancels, and exp cannot underflow in all channels
+        more = sigma[c] - sigma[hero]  # what they share cancels: exp must not underflow in all channels
         if more != 0.0:
             density[c] *= np.exp(-more * t)
         if hit:

@@ -57,7 +57,7 @@ def trace_in_colour(
 ) -> tuple[float, float, float]:
     """Follow one path for each row of the results; no refraction here.
 
-    lamp, wall, plan  as in `trace`, the light of strength 1; plan's albedo, emission, index and ambient are not used
+    lamp, wall, plan  as in `trace`, the light of strength 1; plan's albedo, emission, eta and ambient are not used
     albedo, emission  (channels,) of the medium
     colour            (channels,) strength of the light
     value             (n, channels) results: radiance
@@ -124,10 +124,8 @@ def trace_in_colour(
                     continue
             if plan.look and lamp.kind != DARK:
                 wx, wy, wz, distance, arriving = towards(rng, lamp, x, y, z)
-                if hit:
-                    p = phase_density(lobe, dx * wx + dy * wy + dz * wz)
-                else:
-                    p = max(0.0, wx * nx + wy * ny + wz * nz) / np.pi
+                along_n, along_d = wx * nx + wy * ny + wz * nz, wx * dx + wy * dy + wz * dz
+                p = phase_density(lobe, along_d) if hit else max(0.0, along_n) / np.pi
                 if p > 0.0 and reach(wall, x, y, z, wx, wy, wz, on_wall) >= distance:
                     enter, leave = crossing(region, x, y, z, wx, wy, wz)
                     start, stop = max(enter, 0.0), min(leave, distance)

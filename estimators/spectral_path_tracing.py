@@ -43,14 +43,14 @@ class SpectralPathTracer:
     def __post_init__(self) -> None:
         single(self.ray)
         choose_gathering(self.gathering, self.light, self.surface, 1.0)
-        if self.channels is None:
+        if self.channels == 0:
             raise UnsupportedError("neither medium nor light have channels; use PathTracer", "medium")
 
     @property
-    def channels(self) -> int | None:
-        """How many channels medium and light have together."""
+    def channels(self) -> int:
+        """How many channels medium and light have together; 0 if both are grey."""
         medium = (0.0,) * self.medium.channels if self.medium.channels else 0.0
-        return channel_count(medium=medium, light=0.0 if self.light is None else strength(self.light))
+        return channel_count(medium=medium, light=0.0 if self.light is None else strength(self.light)) or 0
 
     @cached_property
     def _scene(self) -> tuple[Any, ...]:
@@ -77,7 +77,7 @@ class SpectralPathTracer:
         from fogproof.estimators.kernel_spectral_paths import trace_in_colour
 
         origin, direction = self.ray.origin[None], self.ray.direction[None]
-        return run(trace_in_colour, self._scene, origin, direction, rng, n, self.channels or 1)
+        return run(trace_in_colour, self._scene, origin, direction, rng, n, self.channels)
 
     def draw(self, rng: np.random.Generator, n: int) -> Draws:
         """Return n realisations of the radiance (n, channels)."""

@@ -29,7 +29,7 @@ class LiteralPaths:
     looked_for  whether collisions look for the light
     met         whether light that scattered paths meet counts; with both, each by its share
     deepest     greatest scattering order
-    roulette    scattering order from which on paths survive with the probability of their throughput, at most 0.7
+    roulette    scattering order from which on paths survive with the probability of their throughput, at most 0.9
 
     compensated   survivors of the roulette weigh more
     share_light   light that is looked for and met counts by shares, not twice
@@ -63,9 +63,10 @@ class LiteralPaths:
         """Return n realisations."""
         started = n + int(self.spare * n)
         value, scatterings = self._follow(rng, started)
-        kept = np.argsort(scatterings, kind="stable")[:n] if started > n else slice(None)
-        value = value[kept]
-        return Draws(value[:, 0] if self.medium.channels is None else value, scatterings[kept].astype(float))
+        if started > n:
+            first = np.argsort(scatterings, kind="stable")[:n]
+            value, scatterings = value[first], scatterings[first]
+        return Draws(value[:, 0] if self.medium.channels is None else value, scatterings.astype(float))
 
     def _follow(self, rng: np.random.Generator, n: int) -> tuple[np.ndarray, np.ndarray]:
         sigma, albedo = np.atleast_1d(self.medium.sigma_t), np.atleast_1d(self.medium.albedo)
@@ -74,7 +75,9 @@ class LiteralPaths:
         assert isinstance(phase, PhaseFunction)
         x, w = np.tile(self.ray.origin, (n, 1)), np.tile(self.ray.direction, (n, 1))
         value, scatterings = np.zeros((n, channels)), np.zeros(n, int)
-        alive, hero, density = np.arange(n), rng.integers(channels, size=n), np.ones((n, channels))
+        alive: np.ndarray = np.arange(n)
+        hero: np.ndarray = rng.integers(channels, size=n)
+        density = np.ones((n, channels))
         carried, meets = np.ones((n, channels)), np.ones(n)
         while len(alive):
             enter, leave = through(self.shape, x.T, w.T)
@@ -108,7 +111,7 @@ class LiteralPaths:
             meets = self._share_of_meeting(drawn)
             w = turned
             late = scatterings[alive] >= self.roulette
-            survival = np.where(late, np.minimum((self._weight(density) * carried).max(axis=1), 0.7), 1.0)
+            survival = np.where(late, np.minimum((self._weight(density) * carried).max(axis=1), 0.9), 1.0)
             stays = rng.random(len(alive)) < survival
             if self.compensated:
                 carried = carried / survival[:, None]

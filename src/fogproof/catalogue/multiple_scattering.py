@@ -434,9 +434,7 @@ def _walks() -> list[EstimatorCase]:
 
     def flights() -> Reference:
         z, square = analytic.mean_displacement(7, 0.6), analytic.mean_square_displacement(7, 0.6)
-        return Reference(
-            np.array([z.value, square.value]), np.array([z.error, square.error]), z.method, z.source
-        )
+        return Reference(np.array([z.value, square.value]), np.array([z.error, square.error]), z.method, z.source)
 
     return [
         _case(
