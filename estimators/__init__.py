@@ -16,7 +16,7 @@ from fogproof.estimators.noise import FractalNoise
 from fogproof.estimators.path_tracing import PathTracer, Roulette
 from fogproof.estimators.phase import phase_table, phase_value
 from fogproof.estimators.placing import placer
-from fogproof.estimators.random_walks import PointSourceWalks, RandomFlights, ScatteringsUnderUniformSky
+from fogproof.estimators.random_walks import PointSourceWalks, RandomFlights, RodWalks, ScatteringsUnderUniformSky
 from fogproof.estimators.ratio_tracking import RatioTransmittance, ResidualRatioTransmittance, ratio_tracking
 from fogproof.estimators.ray_marching import MarchedFreePath, MarchedTransmittance, RayMarch, feature_size
 from fogproof.estimators.regular_tracking import RegularFreePath, RegularTransmittance, regular_tracking
@@ -60,6 +60,7 @@ __all__ = [
     "RegularFreePath",
     "RegularTransmittance",
     "ResidualRatioTransmittance",
+    "RodWalks",
     "Roulette",
     "ScatteringsUnderUniformSky",
     "SpectralFog",

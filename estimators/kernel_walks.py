@@ -46,3 +46,31 @@ def collisions_within(
             if rng.random() >= albedo:
                 break
             dx, dy, dz = scattered(rng, lobe, dx, dy, dz)
+
+
+@kernel
+def along_rod(
+    rng: np.random.Generator, albedo: float, length: float, forward: float, left: np.ndarray, collisions: np.ndarray
+) -> None:
+    """Write by which end walks leave that enter a rod at 0: left (n, 2) one of (1, 0) back, (0, 1) beyond, (0, 0) absorbed.
+
+    forward     probability of going on in the same direction after scattering
+    collisions  (n,)
+    """
+    for i in range(len(left)):
+        x, sign, count = 0.0, 1.0, 0
+        left[i, 0] = left[i, 1] = 0.0
+        while True:
+            x += sign * rng.standard_exponential()
+            if x < 0.0:
+                left[i, 0] = 1.0
+                break
+            if x > length:
+                left[i, 1] = 1.0
+                break
+            count += 1
+            if rng.random() >= albedo:
+                break
+            if rng.random() >= forward:
+                sign = -sign
+        collisions[i] = count

@@ -72,8 +72,8 @@ class PathTracer:
     surface           opaque, in or behind the medium, not in touch with its boundary if that refracts
     gathering         None: "looked for" with a point or directional light, "both" with an environment, "met" if the boundary
                       refracts
-    refractive_index  of the medium; other than 1 its boundary reflects and refracts, light has to be met, and emission counts
-                      as L_e / index^2, as all radiance does inside
+    refractive_index  of the medium; other than 1 its boundary reflects and refracts, and light has to be met; what the medium
+                      emits is then its radiance over index^2, which is the same on both sides of the boundary
     ambient           in-scattered radiance that a collision takes as constant instead of following it
     deepest           greatest scattering order: 0 none, 1 single; None for all
     columns           how many the result has, one for each order and the last for all beyond; 1 is just the radiance

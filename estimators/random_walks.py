@@ -65,6 +65,33 @@ class PointSourceWalks:
         return Draws(count)
 
 
+@dataclass(frozen=True)
+class RodWalks:
+    """What comes back from a rod and what passes it, in one dimension.
+
+    albedo  share of the collisions that scatter, in [0, 1]
+    length  of the rod, in mean free paths
+    g       mean cosine: a share (1 + g)/2 goes on forwards
+    """
+
+    albedo: float
+    length: float
+    g: float = 0.0
+
+    def __post_init__(self) -> None:
+        number("albedo", self.albedo, "must lie in [0, 1]", 0, 1)
+        number("length", self.length, "must be finite and >= 0", 0)
+        number("g", self.g, "must lie in [-1, 1]", -1, 1)
+
+    def draw(self, rng: np.random.Generator, n: int) -> Draws:
+        """Return n realisations (n, 2), columns back and through."""
+        from fogproof.estimators.kernel_walks import along_rod
+
+        left, collisions = np.empty((n, 2)), np.empty(n)
+        along_rod(rng, float(self.albedo), float(self.length), 0.5 * (1.0 + self.g), left, collisions)
+        return Draws(left, collisions)
+
+
 @dataclass(frozen=True, eq=False)
 class ScatteringsUnderUniformSky:
     """How often light of a uniform sky scatters in a body that absorbs nothing, by rays that enter anywhere.

@@ -15,6 +15,7 @@ from fogproof.estimators import (
     PathTracer,
     PointSourceWalks,
     RandomFlights,
+    RodWalks,
     Roulette,
     ScatteringsUnderUniformSky,
     SpectralPathTracer,
@@ -93,6 +94,11 @@ def _times(reference: Reference, factor: Any) -> Reference:
     return Reference(reference.value * factor, error, reference.method, reference.source)
 
 
+def _pair(one: Reference, two: Reference) -> Reference:
+    value, error = np.array([one.value, two.value]), np.array([one.error, two.error])
+    return Reference(value, error, one.method, one.source)
+
+
 def _random_walk_variance() -> Reference:
     """A walk that weighs c^n when it leaves towards the sky: its square weighs (c^2)^n, so E[w^2] = R(c^2)."""
     first, second = analytic.slab_reflectance(0.9, 1.0, VIEW), analytic.slab_reflectance(0.9 * 0.9, 1.0, VIEW)
@@ -145,7 +151,7 @@ def cases() -> list[EstimatorCase]:
 
 def _slabs() -> list[EstimatorCase]:
     forward = Medium(0.1, 0.9, HenyeyGreenstein(0.75))
-    bright, thick = Medium(0.02, 1.98), Slab((0.0, 0.0, 0.0), UP, 2.0)
+    bright = Medium(0.02, 1.98)
     glowing = Medium(0.3, 0.7, emission=2.0)
     return [
         _case(
@@ -190,12 +196,12 @@ def _slabs() -> list[EstimatorCase]:
         ),
         _case(
             "slab/roulette",
-            "Thick slab that absorbs little, paths ended by roulette",
-            lambda: PathTracer(bright, thick, ABOVE, SKY, BLACK, roulette=Roulette(3, 0.7)),
-            lambda: analytic.slab_reflectance(0.99, 4.0, VIEW),
+            "Slab that absorbs little, paths ended by roulette",
+            lambda: PathTracer(bright, SLAB, ABOVE, SKY, BLACK, roulette=Roulette(3, 0.95)),
+            lambda: analytic.slab_reflectance(0.99, 2.0, VIEW),
             "slab_reflectance",
             "survivors of the roulette do not weigh more",
-            lambda: _literal(medium=bright, shape=thick, looked_for=True, roulette=3, compensated=False),
+            lambda: _literal(medium=bright, looked_for=True, roulette=3, compensated=False),
             source="Russian roulette: Arvo & Kirk 1990",
         ),
         _case(
@@ -215,6 +221,16 @@ def _slabs() -> list[EstimatorCase]:
             "slab_reflectance_orders, slab_reflectance",
             "an order too much is told of each",
             lambda: _shifted(PathTracer(FOG, SLAB, ABOVE, SKY, BLACK, "met", columns=6, roulette=None)),
+        ),
+        _case(
+            "slab/ambient",
+            "Slab whose collisions take ambient light for what is scattered in",
+            lambda: PathTracer(FOG, SLAB, ABOVE, None, Surface(BELOW, radiance=0.3), ambient=0.8),
+            lambda: analytic.ambient_fog(FOG, Ray((0.0, 0.0, 0.0), UP, 1 / VIEW), 0.8, 0.3),
+            "ambient_fog",
+            "ambient light is not multiplied by the albedo",
+            lambda: PathTracer(FOG, SLAB, ABOVE, None, Surface(BELOW, radiance=0.3), ambient=0.8 / 0.9),
+            variance=lambda: analytic.ambient_fog_variance(FOG, Ray((0.0, 0.0, 0.0), UP, 1 / VIEW), 0.8, 0.3),
         ),
         _case(
             "slab/background",
@@ -251,6 +267,19 @@ def _shifted(tracer: PathTracer) -> Drawn:
     def draw(rng: np.random.Generator, n: int) -> Draws:
         draws = tracer.draw(rng, n)
         return draws._replace(value=np.roll(np.asarray(draws.value), 1, axis=1))
+
+    return Drawn(draw)
+
+
+def _scattered_only(tracer: PathTracer) -> Drawn:
+    return Drawn(lambda rng, n: Draws(np.asarray(tracer.draw(rng, n).value)[:, 1]))
+
+
+def _merged(tracer: PathTracer) -> Drawn:
+    def draw(rng: np.random.Generator, n: int) -> Draws:
+        draws = tracer.draw(rng, n)
+        none, once, *more = np.asarray(draws.value).T
+        return draws._replace(value=np.stack([none + once, 0 * once, *more], axis=1))
 
     return Drawn(draw)
 
@@ -304,9 +333,8 @@ def _boundaries() -> list[EstimatorCase]:
             lambda: PathTracer(FOG, SLAB, ABOVE, SKY, BLACK, refractive_index=1.5),
             lambda: analytic.slab_reflectance(0.9, 1.0, VIEW, None, 1.5),
             "slab_reflectance",
-            "the boundary is that of water, refractive index 1.33",
-            lambda: PathTracer(FOG, SLAB, ABOVE, SKY, BLACK, refractive_index=1.33),
-            samples=1_000_000,
+            "light that the boundary reflects from outside is forgotten",
+            lambda: _scattered_only(PathTracer(FOG, SLAB, ABOVE, SKY, BLACK, refractive_index=1.5, columns=2)),
         ),
         _case(
             "glass/transmitted",
@@ -314,9 +342,10 @@ def _boundaries() -> list[EstimatorCase]:
             lambda: PathTracer(FOG, SLAB, ABOVE, None, Surface(BELOW, radiance=1.0), refractive_index=1.5),
             lambda: analytic.slab_transmittance(0.9, 1.0, VIEW, None, 1.5),
             "slab_transmittance",
-            "the boundary does not reflect",
-            lambda: PathTracer(FOG, SLAB, ABOVE, None, Surface(BELOW, radiance=1.0)),
-            samples=1_000_000,
+            "radiance is divided by the square of the index on the way out, never multiplied on the way in",
+            lambda: _scaled(
+                PathTracer(FOG, SLAB, ABOVE, None, Surface(BELOW, radiance=1.0), refractive_index=1.5), 1 / 1.5**2
+            ),
         ),
     ]
 
@@ -338,6 +367,22 @@ def _bodies() -> list[EstimatorCase]:
             source=_LOOKING,
         ),
         _case(
+            "ball/orders",
+            "Ball under the sky, orders one by one",
+            lambda: PathTracer(
+                Medium(0.0, 1.0), BALL, ASIDE, SKY, gathering="looked for", columns=5, deepest=4, roulette=None
+            ),
+            lambda: analytic.ball_radiance_orders(1.0, 0.3, 4),
+            "ball_radiance_orders",
+            "light that was scattered once passes for light that was not",
+            lambda: _merged(
+                PathTracer(
+                    Medium(0.0, 1.0), BALL, ASIDE, SKY, gathering="looked for", columns=5, deepest=4, roulette=None
+                )
+            ),
+            source=_LOOKING,
+        ),
+        _case(
             "ball/lamp",
             "Ball lit by a point light outside, scattered once",
             lambda: PathTracer(FOG, BALL, ASIDE, lamp, deepest=1),
@@ -353,8 +398,8 @@ def _bodies() -> list[EstimatorCase]:
             lambda: PathTracer(peaked, BALL, ASIDE, SKY, gathering="met", roulette=None),
             lambda: analytic.white_furnace(peaked, ASIDE),
             "white_furnace",
-            "paths end after twenty scatterings",
-            lambda: PathTracer(peaked, BALL, ASIDE, SKY, gathering="met", roulette=None, deepest=20),
+            "paths end after three scatterings",
+            lambda: PathTracer(peaked, BALL, ASIDE, SKY, gathering="met", roulette=None, deepest=3),
             variance=lambda: 0.0,
             samples=100_000,
         ),
@@ -376,8 +421,10 @@ def _bodies() -> list[EstimatorCase]:
             lambda: PathTracer(glass, BALL, ASIDE, Environment(2.0), refractive_index=1.5),
             lambda: analytic.thermal_furnace(glass, ASIDE, 2.0),
             "thermal_furnace",
-            "radiance is divided by the square of the index on the way out, never multiplied on the way in",
-            lambda: _scaled(PathTracer(glass, BALL, ASIDE, Environment(2.0), refractive_index=1.5), 1 / 1.5**2),
+            "the square of the refractive index is put into what the medium emits, but not into the light from outside",
+            lambda: PathTracer(
+                Medium(0.5, 2.0, emission=2.0 * 1.5**2), BALL, ASIDE, Environment(2.0), refractive_index=1.5
+            ),
             samples=200_000,
         ),
     ]
@@ -432,16 +479,12 @@ def _walks() -> list[EstimatorCase]:
     fog = Medium(0.3, 2.0, HenyeyGreenstein(0.8))
     box = Box((0.0, 0.0, 0.0), (1.0, 2.0, 3.0))
 
-    def flights() -> Reference:
-        z, square = analytic.mean_displacement(7, 0.6), analytic.mean_square_displacement(7, 0.6)
-        return Reference(np.array([z.value, square.value]), np.array([z.error, square.error]), z.method, z.source)
-
     return [
         _case(
             "walks/flights",
             "Where photons are after seven flights",
             lambda: RandomFlights(7, lobe),
-            flights,
+            lambda: _pair(analytic.mean_displacement(7, 0.6), analytic.mean_square_displacement(7, 0.6)),
             "mean_displacement, mean_square_displacement",
             "the sign of the scattering cosine",
             lambda: RandomFlights(7, HenyeyGreenstein(-0.6)),
@@ -456,6 +499,16 @@ def _walks() -> list[EstimatorCase]:
             "a collision absorbs before it is counted",
             lambda: _scaled(PointSourceWalks(0.9, radii), 0.9),
             source="Case, de Hoffmann & Placzek 1953",
+        ),
+        _case(
+            "walks/rod",
+            "What comes back from a rod, and what passes it",
+            lambda: RodWalks(0.9, 2.0, 0.5),
+            lambda: _pair(analytic.rod_reflectance(0.9, 2.0, 0.5), analytic.rod_transmittance(0.9, 2.0, 0.5)),
+            "rod_reflectance, rod_transmittance",
+            "a share g goes on forwards, not (1 + g)/2",
+            lambda: RodWalks(0.9, 2.0, 0.0),
+            source="Schuster 1905",
         ),
         _case(
             "walks/scatterings",
