@@ -34,10 +34,14 @@ ENDLESS = 1 << 62
 
 @dataclass(frozen=True)
 class Roulette:
-    """From scattering order `start` on, paths go on with probability min(throughput, survival), and weigh that much more."""
+    """From scattering order `start` on, paths go on with probability min(throughput, survival), and weigh that much more.
+
+    With survival 1 no path weighs more than the light it could have carried; below, the variance may be infinite where little is
+    absorbed.
+    """
 
     start: int = 5
-    survival: float = 0.95
+    survival: float = 1.0
 
     def __post_init__(self) -> None:
         whole("start", self.start, 0)

@@ -9,11 +9,16 @@ from hypothesis import strategies as st
 from fogproof.analytic import (
     ambient_fog,
     ball_radiance,
+    ball_radiance_orders,
+    half_space_reflectance,
+    half_space_reflectance_orders,
     mean_scatterings,
     single_scattering,
     slab_emissivity,
     slab_reflectance,
+    slab_reflectance_orders,
     slab_transmittance,
+    slab_transmittance_orders,
 )
 from fogproof.catalogue.broken_paths import LiteralPaths
 from fogproof.checks import check_estimator, fresh_seed
@@ -44,6 +49,7 @@ from fogproof.scene.lights import DirectionalLight, Environment, PointLight, Spo
 from fogproof.scene.occluders import Sphere
 from fogproof.scene.shapes import Ball, Box, HalfSpace, Slab, Unbounded
 from fogproof.scene.surfaces import Plane, Surface
+from fogproof.verify import run, select
 
 ALPHA = 1e-9
 UP = (0.0, 0.0, 1.0)
@@ -254,29 +260,67 @@ def test_the_plain_tracer_of_the_broken_twins_is_right_without_their_errors(trac
     accept(tracer, reference(), 100_000)
 
 
-@given(
-    st.floats(0, 1),
-    st.floats(-6, 4).map(lambda x: 10.0**x),
-    st.sampled_from([0.0, 0.99, -0.99]),
-    st.sampled_from([1.0, 1.5]),
-)
-@settings(max_examples=15, deadline=None)
-def test_extremes_finish_and_stay_within_what_is_possible(albedo, tau, g, index):
+ALBEDO = 1 - 1e-9
+EXTREMES = {
+    "albedo": st.sampled_from([0.0, ALBEDO, 1.0]) | st.floats(0, 1),
+    "tau": st.sampled_from([1e-6, 1e4]) | st.floats(-6, 4).map(lambda x: 10.0**x),
+    "g": st.sampled_from([0.0, 0.99, -0.99]) | st.floats(-0.99, 0.99),
+    "index": st.sampled_from([0.7, 1.0, 1.5, 2.5]),
+}
+
+
+@given(**EXTREMES)
+@settings(max_examples=60, deadline=None)
+def test_at_extremes_each_path_and_what_was_cut_of_it_make_the_furnace_whole(albedo, tau, g, index):
     medium = Medium(tau * (1 - albedo), tau * albedo, HenyeyGreenstein(g), emission=1.0)
-    tracer = PathTracer(medium, SLAB, ABOVE, SKY, refractive_index=index, gathering="met", events=20_000)
-    paths = tracer.paths(np.random.default_rng(fresh_seed()), 200)
-    assert np.isfinite(paths.value).all()
-    # In a thermal furnace nothing is brighter than 1 but what the roulette makes up for.
-    assert paths.value.mean() <= 1 + 12 * (paths.value.std() + 1e-12) / np.sqrt(200)
+    tracer = PathTracer(medium, SLAB, ABOVE, SKY, gathering="met", refractive_index=index, roulette=None, events=2000)
+    paths = tracer.paths(np.random.default_rng(fresh_seed()), 50)
+    assert np.abs(paths.value[:, 0] + paths.cut - 1).max() <= 1e-11
 
 
-def test_a_thick_slab_that_absorbs_next_to_nothing():
-    albedo = 1 - 1e-9
-    tracer = PathTracer(Medium(1e3 * (1 - albedo), 1e3 * albedo), SLAB, ABOVE, SKY, BLACK, "met", roulette=None)
-    paths = tracer.paths(np.random.default_rng(fresh_seed()), 3000)
-    exact = float(slab_reflectance(albedo, 1e3, 0.5).value)
-    off = abs(paths.value.mean() - exact)
-    assert off <= paths.cut.mean() + 6 * paths.value.std() / np.sqrt(3000) + 1e-6
+@given(**EXTREMES)
+@settings(max_examples=20, deadline=None)
+def test_extremes_with_everything_else_stay_finite(albedo, tau, g, index):
+    medium = Medium(tau * (1 - albedo), tau * albedo, HenyeyGreenstein(g), emission=1.0)
+    rng = np.random.default_rng(fresh_seed())
+    for how in ({"refractive_index": index}, {"gathering": "both"}, {"gathering": "looked for"}):
+        paths = PathTracer(medium, SLAB, ABOVE, SKY, BLACK, **how, events=2000).paths(rng, 30)
+        assert np.isfinite(paths.value).all()
+        assert paths.value.min() >= 0
+        assert np.isfinite(paths.cut).all()
+
+
+HARD = {  # albedo, tau, g, refractive index, paths, events
+    "thin": (ALBEDO, 1e-3, 0.0, 1.0, 1_000_000, 1000),
+    "thin glass": (ALBEDO, 1e-6, 0.0, 1.5, 200_000, 1000),
+    "forward": (ALBEDO, 100.0, 0.99, 1.0, 5_000, 10_000),
+    "backward": (0.9, 100.0, -0.99, 1.0, 50_000, 10_000),
+    "backward, nothing absorbed": (ALBEDO, 100.0, -0.99, 1.0, 50_000, 10_000),
+    "thick": (ALBEDO, 1e4, 0.0, 1.0, 50_000, 10_000),
+    "thick glass": (ALBEDO, 1e4, 0.0, 1.5, 50_000, 10_000),
+    "thick, forward": (ALBEDO, 1e3, 0.99, 1.0, 10_000, 10_000),
+}
+
+
+@pytest.mark.parametrize("name", HARD)
+def test_hard_slabs_are_unbiased_but_for_what_is_cut(name):
+    """Values lie in [0, 1]: the bounds are Maurer & Pontil's (2009), which hold for every law."""
+    albedo, tau, g, index, n, events = HARD[name]
+    medium = Medium(tau * (1 - albedo), tau * albedo, HenyeyGreenstein(g))
+    tracer = PathTracer(medium, SLAB, ABOVE, SKY, BLACK, "met", refractive_index=index, roulette=None, events=events)
+    seed = fresh_seed()
+    paths = tracer.paths(np.random.default_rng(seed), n)
+    exact = slab_reflectance(albedo, tau, 0.5, HenyeyGreenstein(g) if g else None, index)
+    low, high = paths.value[:, 0], paths.value[:, 0] + paths.cut
+    assert high.max() <= 1 + 1e-12
+    assert low.mean() - reach(low) <= exact.value + exact.error, f"seed {seed}"
+    assert high.mean() + reach(high) >= exact.value - exact.error, f"seed {seed}"
+
+
+def reach(x):
+    """How far the mean of numbers in [0, 1] may lie from its expectation, but for ALPHA."""
+    log = np.log(2 / ALPHA)
+    return np.sqrt(2 * x.var(ddof=1) * log / len(x)) + 7 * log / (3 * (len(x) - 1))
 
 
 def test_what_is_cut_is_told():
@@ -289,21 +333,85 @@ def test_what_is_cut_is_told():
 
 
 def test_batches_do_not_prefer_short_paths():
-    """A batch of one has the same distribution of path lengths as a batch of many."""
-    tracer = PathTracer(FOG, SLAB, ABOVE, SKY, BLACK, "met", roulette=None)
-    rng = np.random.default_rng(fresh_seed())
-    ones = np.concatenate([tracer.paths(rng, 1).scatterings for _ in range(4000)])
-    many = tracer.paths(rng, 400_000).scatterings
-    z = (ones.mean() - many.mean()) / np.sqrt(ones.var() / len(ones) + many.var() / len(many))
-    assert abs(z) < 6.5
+    """What a path is worth depends on the paths before it alone: neither on how many follow, nor on which end first."""
+    for tracer in (
+        PathTracer(FOG, SLAB, ABOVE, SKY, BLACK, "met", roulette=None),
+        PathTracer(FOG, BALL, ASIDE, PointLight((0, 2, 0), 1.0), columns=4),
+        SpectralPathTracer(COLOURS, SLAB, ABOVE, SKY, BLACK),
+    ):
+        few, many = (tracer.paths(np.random.default_rng(9), n) for n in (1000, 5000))
+        for part, whole in zip(few, many, strict=True):
+            assert np.array_equal(part, whole[:1000])
 
 
-def test_the_seed_decides():
-    tracer = PathTracer(FOG, BALL, ASIDE, PointLight((0, 2, 0), 1.0), columns=4)
-    one, two = (tracer.draw(np.random.default_rng(9), 1000) for _ in range(2))
-    assert np.array_equal(one.value, two.value)
-    assert one.value.shape == (1000, 4)
-    assert np.array_equal(one.cost, two.cost)
+def test_workers_do_not_change_a_bit():
+    cases = select(["paths/slab/met", "paths/slab/colours", "paths/box/voxels", "paths/walks"])
+    one, two = (
+        {r.case.name: r.verdict.to_dict()["findings"] for r in run(cases, seed=9, alpha=1e-6, workers=n)}
+        for n in (1, 2)
+    )
+    assert one == two
+    assert len(one) == len(cases)
+
+
+SQUARES = {
+    "slab, forward": lambda: (
+        PathTracer(Medium(0.1, 0.9, HenyeyGreenstein(0.6)), SLAB, ABOVE, SKY, BLACK, "met", roulette=None),
+        [slab_reflectance(c, 1.0, 0.5, HenyeyGreenstein(0.6)) for c in (0.9, 0.9**2)],
+    ),
+    "glass": lambda: (
+        PathTracer(FOG, SLAB, ABOVE, SKY, BLACK, refractive_index=1.5, roulette=None),
+        [slab_reflectance(c, 1.0, 0.5, None, 1.5) for c in (0.9, 0.9**2)],
+    ),
+    "transmitted": lambda: (
+        PathTracer(FOG, SLAB, ABOVE, None, Surface(Plane((0, 0, -2), UP), radiance=1.0), roulette=None),
+        [slab_transmittance(c, 1.0, 0.5) for c in (0.9, 0.9**2)],
+    ),
+    "half space": lambda: (
+        PathTracer(Medium(0.2, 0.8), HalfSpace((0, 0, 0), UP), ABOVE, SKY, gathering="met", deepest=200, roulette=None),
+        [half_space_reflectance(c, 0.5) for c in (0.8, 0.8**2)],
+    ),
+    "ball": lambda: (
+        PathTracer(Medium(1.0, 3.0), BALL, ASIDE, SKY, gathering="met", roulette=None),
+        [ball_radiance(c, 4.0, 1.2) for c in (0.75, 0.75**2)],
+    ),
+}
+
+
+@pytest.mark.parametrize("name", SQUARES)
+def test_the_square_of_a_walk_weighs_like_a_walk_of_the_squared_albedo(name):
+    """A walk that weighs c^n when it leaves has E[w] = R(c), so E[w^2] = R(c^2)."""
+    tracer, (first, second) = SQUARES[name]()
+    variance = Reference(second.value - first.value**2, second.error + 3 * first.error, "", "")
+    seed = fresh_seed()
+    verdict = check_estimator(tracer.draw, first, variance=variance, samples=400_000, alpha=ALPHA, seed=seed)
+    assert verdict.outcome == "not rejected", f"seed {seed}: {verdict}"
+    assert any(finding.check == "variance" for finding in verdict.findings)
+
+
+ORDERS = {
+    "reflected forward": lambda: (
+        PathTracer(Medium(0.0, 1.0, HenyeyGreenstein(0.6)), SLAB, ABOVE, SKY, BLACK, columns=6, deepest=5),
+        slab_reflectance_orders(1.0, 0.5, 5, HenyeyGreenstein(0.6)),
+    ),
+    "transmitted": lambda: (
+        PathTracer(Medium(0.0, 1.0), SLAB, ABOVE, None, Surface(Plane((0, 0, -2), UP), radiance=1.0), columns=6, deepest=5),
+        slab_transmittance_orders(1.0, 0.5, 5),
+    ),
+    "half space": lambda: (
+        PathTracer(Medium(0.0, 1.0), HalfSpace((0, 0, 0), UP), ABOVE, SKY, columns=6, deepest=5, gathering="looked for"),
+        half_space_reflectance_orders(0.5, 5),
+    ),
+    "ball": lambda: (
+        PathTracer(Medium(0.0, 2.0), BALL, ASIDE, SKY, columns=6, deepest=5, gathering="met"),
+        ball_radiance_orders(2.0, 0.6, 5),
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ORDERS)
+def test_orders(name):
+    accept(*ORDERS[name](), 400_000)
 
 
 @pytest.mark.parametrize("shape", [BALL, BOX, Slab((0, 0, 0), UP, 0.7)])
