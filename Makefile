@@ -5,7 +5,7 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help verify test lint format calibrate oracle-hard golden bench clean
+.PHONY: help verify test lint format calibrate repeat oracle-hard golden bench clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -29,7 +29,10 @@ format: $(VENV)/.installed-lint  ## let ruff rewrite what it can
 calibrate: $(VENV)/.installed-test  ## how often the checks reject what is right; an hour, rewrites docs/calibration.md
 	$(BIN)/python tools/calibrate.py
 
-oracle-hard: $(VENV)/.installed-test  ## the airlight integral on 10^5 hard cases against ball arithmetic
+repeat: $(VENV)/.installed-test  ## 20 runs of the catalogue with fresh seeds: no false alarm
+	$(BIN)/python tools/repeat_verify.py
+
+oracle-hard: $(VENV)/.installed-test  ## the oracle on 10^5 hard cases against many-digit arithmetic
 	$(BIN)/python tools/oracle_hard.py
 
 bench: $(VENV)/.installed-test  ## benchmarks, as ratios of interleaved runs
