@@ -136,6 +136,36 @@ def test_furnaces(name):
     accept(PathTracer(*args, **more), ONE)
 
 
+points = st.tuples(*[st.floats(-2, 2)] * 3)
+directions = points.filter(lambda v: np.linalg.norm(v) > 0.1).map(lambda v: tuple(np.array(v) / np.linalg.norm(v)))
+shapes = st.one_of(
+    st.builds(Ball, points, st.floats(0.2, 2)),
+    st.builds(lambda low, sides: Box(low, tuple(np.array(low) + sides)), points, st.tuples(*[st.floats(0.2, 2)] * 3)),
+    st.builds(Slab, points, directions, st.floats(0.2, 2)),
+    st.builds(HalfSpace, points, directions),
+)
+places = st.one_of(st.builds(Plane, points, directions), st.builds(Sphere, points, st.floats(0.2, 2)))
+surfaces = st.builds(
+    lambda place, albedo, finish: Surface(place, albedo, finish, 1 - albedo),
+    places, st.floats(0, 1), st.sampled_from(["lambert", "mirror"]),
+)  # fmt: skip
+
+
+@given(
+    shapes, st.none() | surfaces, st.sampled_from([0.6, 1.0, 1.5]), points, directions, st.floats(0, 1), st.floats(0, 1)
+)
+@settings(max_examples=200, deadline=None)
+def test_any_furnace(shape, surface, index, eye, direction, albedo, g):
+    if index != 1:
+        surface = None  # it might touch the boundary
+    medium = Medium(3 * (1 - albedo), 3 * albedo, HenyeyGreenstein(0.99 * g), emission=1.0)
+    tracer = PathTracer(
+        medium, shape, Ray(eye, direction), SKY, surface, "met", refractive_index=index, roulette=None, events=500
+    )
+    paths = tracer.paths(np.random.default_rng(fresh_seed()), 50)
+    assert np.abs(paths.value[:, 0] + paths.cut - 1).max() <= 1e-12
+
+
 SLABS = {
     "met": lambda: (PathTracer(FOG, SLAB, ABOVE, SKY, BLACK, "met"), slab_reflectance(0.9, 1.0, 0.5)),
     "no roulette": lambda: (
@@ -229,11 +259,13 @@ def test_colours(name):
     accept(*SPECTRAL[name](), 400_000)
 
 
-def test_a_path_weighs_no_more_than_the_number_of_channels():
-    tracer = SpectralPathTracer(Medium(0.0, (0.1, 1.0, 30.0)), BALL, ASIDE, SKY, gathering="met", roulette=None)
+@pytest.mark.parametrize("medium", [Medium(0.0, (0.1, 1.0, 30.0)), voxels((3,))])
+def test_the_channels_of_a_path_in_a_white_furnace_have_one_as_their_mean(medium):
+    tracer = SpectralPathTracer(medium, BALL, ASIDE, SKY, gathering="met", roulette=None)
     value = tracer.draw(np.random.default_rng(2), 20_000).value
-    assert value.max() <= 3 + 1e-12
+    assert np.abs(value.mean(axis=1) - 1).max() <= 1e-12
     assert value.min() >= 0
+    assert np.abs(value - 1).max() > 0.1
 
 
 @pytest.mark.parametrize(
