@@ -210,6 +210,20 @@ SLABS = {
 }  # fmt: skip
 
 
+def test_ambient_light_counts_as_scattered_once():
+    tracer = PathTracer(FOG, SLAB, ABOVE, None, Surface(Plane((0, 0, -2), UP), radiance=0.3), ambient=0.8, columns=3)
+    value = tracer.draw(np.random.default_rng(1), 1000).value
+    assert {tuple(row) for row in value.tolist()} == {(0.3, 0.0, 0.0), (0.0, 0.9 * 0.8, 0.0)}
+
+
+def test_from_within_glass_the_boundary_is_a_mirror():
+    """From the centre of a glowing ball of optical radius 1: one radius, then diameters by what the boundary turns back."""
+    tracer = PathTracer(Medium(1.0, 0.0, emission=1.0), BALL, Ray((0, 0, 0), (0.6, 0, 0.8)), refractive_index=4.0)
+    back, radius = ((4.0 - 1) / (4 + 1)) ** 2, np.exp(-1.0)
+    turned = back * radius * (1 - radius**2) / (1 - back * radius**2)
+    accept(tracer, rows(1 - radius + turned))
+
+
 @pytest.mark.parametrize("name", SLABS)
 def test_exact_solutions(name):
     accept(*SLABS[name]())
