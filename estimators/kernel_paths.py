@@ -37,7 +37,7 @@ def towards(rng: np.random.Generator, lamp: Lamp, x: float, y: float, z: float) 
         dx, dy, dz = lamp.x - x, lamp.y - y, lamp.z - z
         square = dx * dx + dy * dy + dz * dz
         scale = 1.0 / np.sqrt(square)
-        return dx * scale, dy * scale, dz * scale, square * scale, lamp.strength / square
+        return dx * scale, dy * scale, dz * scale, square * scale, lamp.strength * scale * scale
     if lamp.kind == PARALLEL:
         return -lamp.x, -lamp.y, -lamp.z, np.inf, lamp.strength
     dx, dy, dz = uniform_direction(rng)

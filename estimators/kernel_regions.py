@@ -22,15 +22,13 @@ def roots(x: float, y: float, z: float, dx: float, dy: float, dz: float, radius:
     """Return where x + t d meets a sphere about the origin, without cancellation; empty if it does not."""
     b = x * dx + y * dy + z * dz
     px, py, pz = x - b * dx, y - b * dy, z - b * dz
-    nearest = np.sqrt(px * px + py * py + pz * pz)
-    square = (radius - nearest) * (radius + nearest)
+    square = radius * radius - (px * px + py * py + pz * pz)
     if not square > 0.0:
         return np.inf, -np.inf
     half = np.sqrt(square)
-    c = x * x + y * y + z * z - radius * radius
-    if b > 0.0:
-        return -b - half, c / (-b - half)
-    return c / (half - b), half - b
+    far = -b - np.copysign(half, b)  # no branch: half of all directions would go either way, unforeseen
+    near = (x * x + y * y + z * z - radius * radius) / far
+    return min(near, far), max(near, far)
 
 
 @inlined
