@@ -144,12 +144,21 @@ def threads() -> None:
             one, two = (elapsed(lambda draw=draw, w=w: in_threads(draw, w)) for w in (1, 2))
             ratios += [one / two] if i >= 0 else []
         print(f"  {name:24s} {quartiles(ratios)}")
+    many, one = (statistics.median(spent(n) for _ in range(50)) for n in (1 << 13, 1))
+    print(f"  of a batch of {1 << 13} paths, all but {one / many:.2%} of the time runs without the interpreter's lock")
 
 
 def in_threads(draw: Callable[[np.random.Generator, int], object], workers: int) -> None:
     """Draw 8 batches."""
     with ThreadPoolExecutor(workers) as pool:
         list(pool.map(lambda i: draw(np.random.default_rng(i), 1 << 17), range(8)))
+
+
+def spent(paths: int) -> float:
+    """Return the processor's time for a batch [s]; a batch of one path is next to nothing but what needs the interpreter."""
+    start = time.process_time()
+    BALL.draw(np.random.default_rng(1), paths)
+    return time.process_time() - start
 
 
 def elapsed(work: Callable[[], object]) -> float:
