@@ -13,13 +13,16 @@ from fogproof.estimators.lit_medium import LitMedium
 from fogproof.estimators.majorant_grid import MajorantGrid
 from fogproof.estimators.marched_airlight import MarchedAirlight
 from fogproof.estimators.noise import FractalNoise
+from fogproof.estimators.path_tracing import PathTracer, Roulette
 from fogproof.estimators.phase import phase_table, phase_value
 from fogproof.estimators.placing import placer
+from fogproof.estimators.random_walks import PointSourceWalks, RandomFlights, RodWalks, ScatteringsUnderUniformSky
 from fogproof.estimators.ratio_tracking import RatioTransmittance, ResidualRatioTransmittance, ratio_tracking
 from fogproof.estimators.ray_marching import MarchedFreePath, MarchedTransmittance, RayMarch, feature_size
 from fogproof.estimators.regular_tracking import RegularFreePath, RegularTransmittance, regular_tracking
 from fogproof.estimators.shadow_rays import shadow_transmittance
 from fogproof.estimators.single_scattering import Airlight
+from fogproof.estimators.spectral_path_tracing import SpectralPathTracer
 from fogproof.estimators.spectral_tracking import SpectralFog, SpectralFreePath, spectral_tracking
 from fogproof.estimators.transmittance import AnalogTransmittance, SpectralTransmittance
 
@@ -49,13 +52,20 @@ __all__ = [
     "MarchedAirlight",
     "MarchedFreePath",
     "MarchedTransmittance",
+    "PathTracer",
+    "PointSourceWalks",
+    "RandomFlights",
     "RatioTransmittance",
     "RayMarch",
     "RegularFreePath",
     "RegularTransmittance",
     "ResidualRatioTransmittance",
+    "RodWalks",
+    "Roulette",
+    "ScatteringsUnderUniformSky",
     "SpectralFog",
     "SpectralFreePath",
+    "SpectralPathTracer",
     "SpectralTransmittance",
     "TruncatedFreePath",
     "UniformEmission",

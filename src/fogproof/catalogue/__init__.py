@@ -10,6 +10,7 @@ from fogproof.catalogue import (
     equiangular,
     free_paths,
     mitsuba,
+    multiple_scattering,
     single_scattering,
     trackers,
     transmittance_and_fog,
@@ -22,5 +23,15 @@ __all__ = ["Altered", "Case", "EstimatorCase", "SamplerCase", "Twin", "all_cases
 @cache
 def all_cases() -> tuple[Case, ...]:
     """Return every case, in the order in which it is reported."""
-    groups = (directions, cosines, free_paths, equiangular, transmittance_and_fog, trackers, single_scattering, mitsuba)
+    groups = (
+        directions,
+        cosines,
+        free_paths,
+        equiangular,
+        transmittance_and_fog,
+        trackers,
+        single_scattering,
+        multiple_scattering,
+        mitsuba,
+    )
     return tuple(case for group in groups for case in group.cases())

@@ -1,0 +1,116 @@
+"""What the path tracer works on: plain numbers, whose `kind` says what they mean. One kernel then serves all of them."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+SPACE, LAYER, BALL, BOX = range(4)
+
+
+class Region(NamedTuple):
+    """The convex region that the medium fills.
+
+    SPACE  everything
+    LAYER  low <= a . x <= high with a unit vector a, low = bx, high = by; a half space if low = -inf
+    BALL   centre a, radius bx
+    BOX    corners a and b
+    """
+
+    kind: int
+    ax: float
+    ay: float
+    az: float
+    bx: float
+    by: float
+    bz: float
+
+
+ISOTROPIC, HENYEY_GREENSTEIN, RAYLEIGH = range(3)
+
+
+class Lobe(NamedTuple):
+    """A phase function; g is the mean cosine of HENYEY_GREENSTEIN."""
+
+    kind: int
+    g: float
+
+
+DARK, POINT, PARALLEL, SKY = range(4)
+
+
+class Lamp(NamedTuple):
+    """A light.
+
+    DARK      none
+    POINT     at (x, y, z) with intensity `strength` [W/sr]
+    PARALLEL  travelling along (x, y, z) with irradiance `strength` [W/m^2]
+    SKY       radiance `strength` [W/(m^2 sr)] from everywhere
+    """
+
+    kind: int
+    x: float
+    y: float
+    z: float
+    strength: float
+
+
+NOWHERE, PLANE, SPHERE = range(3)
+LAMBERT, MIRROR = range(2)
+
+
+class Wall(NamedTuple):
+    """A surface.
+
+    PLANE   a . x = size with a unit vector a
+    SPHERE  centre a, radius size
+    """
+
+    kind: int
+    ax: float
+    ay: float
+    az: float
+    size: float
+    finish: int
+    albedo: float
+    radiance: float
+
+
+class Plan(NamedTuple):
+    """How paths are followed.
+
+    albedo    sigma_s / sigma_t of the medium
+    emission  L_e of the medium [W/(m^2 sr)]
+    eta       refractive index of the medium, 1 if its boundary does not reflect
+    look      whether a collision looks for the light
+    meet      whether light that a scattered path meets by itself counts; with both, each by its share
+    deepest   scattering order at which paths end
+    ambient   in-scattered radiance that a collision takes as constant, < 0 if it is followed instead
+    roulette  scattering order from which on paths are ended at random
+    survival  greatest probability of going on
+    events    collisions and reflections after which a path is cut
+    """
+
+    albedo: float
+    emission: float
+    eta: float
+    look: bool
+    meet: bool
+    deepest: int
+    ambient: float
+    roulette: int
+    survival: float
+    events: int
+
+
+class UniformData(NamedTuple):
+    """A homogeneous medium; extinction [1/m]."""
+
+    sigma: float
+
+
+class UniformSpectralData(NamedTuple):
+    """The same with channels; extinction (channels,) [1/m]."""
+
+    sigma: np.ndarray
