@@ -114,5 +114,5 @@ def _figures(pairs: list[Pair]) -> list[Picture]:
         usable = [row for row in rows if 0 < row[1] < inf and 0 < row[2] < inf]
         if usable:
             drawing = BeforeAfter(what, *(tuple(column) for column in zip(*usable, strict=True)))
-            figures.append(render(drawing, f"comparison-{stem}", (5.6, 4.4)))
+            figures.append(render(drawing, f"comparison-{stem}", (560, 440)))
     return figures

@@ -12,11 +12,12 @@ from fogproof.reports.gallery_airlight import FoggyScene, Glow, SamplesAroundALi
 from fogproof.reports.gallery_media import Fog, Transmittances
 from fogproof.reports.gallery_phase import Approximation, Linear, Polar, SphereSizes
 from fogproof.reports.gallery_sky import SkyAndSunset
-from fogproof.reports.pictures import Drawing, Picture, render
+from fogproof.reports.pictures import Picture
+from fogproof.reports.plots import Plot, render_plot
 from fogproof.reports.templates import fill
 
 
-def drawings(seed: int) -> dict[str, tuple[str, Drawing]]:
+def drawings(seed: int) -> dict[str, tuple[str, Plot]]:
     """Return file name -> (title, drawing); each draws from a random stream of its own."""
 
     def stream(name: str) -> np.random.Generator:
@@ -41,7 +42,7 @@ def write_gallery(folder: str | Path, seed: int = 0) -> Path:
     folder = Path(folder)
     pictures: list[tuple[str, Picture]] = []
     for name, (title, drawing) in drawings(seed).items():
-        picture = render(drawing, name)
+        picture = render_plot(drawing, name)
         picture.save(folder / "figures")
         pictures.append((title, picture))
     page = fill(

@@ -9,7 +9,7 @@ import numpy as np
 
 from fogproof.analytic import ambient_fog, transmittance
 from fogproof.estimators import AnalogFog, AnalogTransmittance
-from fogproof.reports.pictures import EXPECTED, INK, OBSERVED, THIRD
+from fogproof.reports.colours import EXPECTED, INK, OBSERVED, THIRD
 from fogproof.scene import AnyMedium, ExponentialMedium, LinearMedium, Medium, PiecewiseConstantMedium, Ray
 
 if TYPE_CHECKING:

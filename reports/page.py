@@ -36,7 +36,7 @@ class Shown:
 def write_page(run: Run, folder: str | Path) -> Path:
     """Write `folder/index.html` and its figures as `folder/figures/*.png` and `*.svg`; return the page's path.
 
-    A pass has its first figure alone, and as SVG alone: figures of noise are not worth the time that they take.
+    A pass has its first figure alone: the others are figures of noise.
     """
     folder = Path(folder)
     cases = sorted(run.cases, key=lambda case: STATUSES.index(case.status))
@@ -50,7 +50,7 @@ def write_page(run: Run, folder: str | Path) -> Path:
         passed = case.status == "passed"
         for index, finding in drawn[:1] if passed else drawn:
             stem = file_stem(case.name, finding.check, str(index))
-            picture = render(parse_figure(finding.figure or {}), stem, png=not passed)
+            picture = render(parse_figure(finding.figure or {}), stem)
             picture.save(folder / "figures")
             svg = picture.on_page
             room -= len(svg)
@@ -109,7 +109,7 @@ def _overview(run: Run) -> Iterable[tuple[str, Any, tuple[float, float]]]:
         f.p_value for v in right for f in v.findings if f.exact and f.p_value is not None and 0 <= f.p_value <= 1
     )
     if exact:
-        yield "p-values", PValues(exact), (5.6, 4.2)
+        yield "p-values", PValues(exact), (560, 420)
     passes = tuple(
         (case.name, case.verdict.resolution.kind, case.verdict.resolution.value)
         for case in run.cases

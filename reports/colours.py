@@ -1,0 +1,42 @@
+"""Colours of every figure: Okabe and Ito's, which differ in every common colour blindness, and by lightness in print."""
+
+INK, GRID, PAPER = "#1b1f24", "#cfd6dd", "#fffffe"
+EXPECTED, OBSERVED, THIRD = "#d55e00", "#0072b2", "#009e73"
+FOURTH, FIFTH, SIXTH = "#cc79a7", "#e69f00", "#56b4e9"
+
+ON_PAGE = {
+    INK: "var(--ink)",
+    GRID: "var(--rule)",
+    PAPER: "var(--paper)",
+    EXPECTED: "var(--warm)",
+    OBSERVED: "var(--cool)",
+    THIRD: "var(--third)",
+}
+"""The variables of the page, light or dark, that stand for them there."""
+
+_RED_TO_BLUE = [
+    "67001f",
+    "b2182b",
+    "d6604d",
+    "f4a582",
+    "fddbc7",
+    "f7f7f7",
+    "d1e5f0",
+    "92c5de",
+    "4393c3",
+    "2166ac",
+    "053061",
+]
+"""Brewer's diverging scheme RdBu."""
+
+
+def diverging(value: float) -> str:
+    """Return the colour of a value from -1 (blue) over 0 (nearly white) to 1 (red), one of 41; grey if it is not a number."""
+    if value != value:
+        return "#888888"
+    place = round(20 * min(max(value, -1.0), 1.0)) / 20
+    at = 5 - 5 * place
+    index = min(int(at), 9)
+    pair = [[int(colour[k : k + 2], 16) for k in (0, 2, 4)] for colour in _RED_TO_BLUE[index : index + 2]]
+    mixed = [round(a + (b - a) * (at - index)) for a, b in zip(*pair, strict=True)]
+    return "#" + "".join(f"{part:02x}" for part in mixed)
