@@ -9,14 +9,22 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from fogproof.reports.comparison import write_comparison_page
+from fogproof.reports.comparison import worse, write_comparison_page
 from fogproof.reports.files import prepare_folder
 from fogproof.reports.gallery import write_gallery
 from fogproof.reports.junit import write_junit
 from fogproof.reports.page import write_page
 from fogproof.reports.records import SCHEMA, parse_record, read_record, write_csv, write_record
 
-__all__ = ["SCHEMA", "prepare_folder", "read_record", "write_comparison", "write_gallery", "write_report"]
+__all__ = [
+    "SCHEMA",
+    "came_out_worse",
+    "prepare_folder",
+    "read_record",
+    "write_comparison",
+    "write_gallery",
+    "write_report",
+]
 
 
 def write_report(record: dict[str, Any], folder: str | Path) -> Path:
@@ -40,3 +48,8 @@ def write_comparison(before: dict[str, Any], after: dict[str, Any], folder: str 
     write_record(before, folder, "before.json")
     write_record(after, folder, "after.json")
     return write_comparison_page(older, newer, Path(folder))
+
+
+def came_out_worse(before: dict[str, Any], after: dict[str, Any]) -> bool:
+    """Return whether some case is right in the older record, or not in it, and wrong in the newer one."""
+    return worse(parse_record(before, "before"), parse_record(after, "after"))

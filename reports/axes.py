@@ -86,10 +86,10 @@ class Axes:
             middle = top + height / 2
             add(Words(max(left - 16 - widest, FONT_SIZE), middle, up, INK, "middle", turned=True))
 
-    def names(self, names: Sequence[str]) -> None:
-        """Write names instead of ticks beside the values 0, 1, 2, … of y."""
+    def names(self, names: Sequence[str], values: Values) -> None:
+        """Write names instead of ticks beside values of y."""
         left, size = self.box[0], 12.0
-        places = self.at(np.full(len(names), self.x.low), np.arange(len(names)))
+        places = self.at(np.full(len(names), self.x.low), values)
         self.sheet.shapes += [
             Words(left - 7, y + 0.36 * size, name, INK, "end", size=size)
             for (_, y), name in zip(places, names, strict=True)
@@ -160,7 +160,7 @@ class Axes:
         for (a, b), column in zip(pairwise(x), colours, strict=True):
             for (c, d), colour in zip(pairwise(y), column, strict=True):
                 alike.setdefault(colour, []).append([(a, c), (b, c), (b, d), (a, d)])
-        self._inside += [Shape(paths, fill=colour) for colour, paths in alike.items()]
+        self._inside += [Shape(paths, fill=colour, crisp=True) for colour, paths in alike.items()]
 
 
 def mark(at: Sequence[tuple[float, float]], colour: str, marker: Marker = "dot", size: float = 4) -> Mark:

@@ -14,6 +14,7 @@ from fogproof.reports.p_values import PValues
 from fogproof.reports.pictures import Picture, render
 from fogproof.reports.records import Run, Status
 from fogproof.reports.resolutions import Resolutions
+from fogproof.reports.summaries import blind, catches, needs, systems
 from fogproof.reports.templates import cases as some_cases
 from fogproof.reports.templates import fill
 from fogproof.reports.text import file_stem
@@ -63,6 +64,12 @@ def write_page(run: Run, folder: str | Path) -> Path:
         overview=overview,
         shown=shown,
         counts={status: sum(case.status == status for case in cases) for status in STATUSES},
+        systems=systems(run),
+        twins=[case for case in cases if case.twin_result],
+        blind=[case for case in cases if blind(case)],
+        catches=catches(run),
+        needs=needs(run.cases),
+        known=[case for case in cases if case.expected == "rejected"],
         headline=headline(run),
         tone=_tone(run),
     )
@@ -74,12 +81,19 @@ def headline(run: Run) -> tuple[str, str]:
     count = {status: sum(case.status == status for case in run.cases) for status in STATUSES}
     wrong, of = count["rejected"] + count["surprise"], f"of {some_cases(len(run.cases))}"
     judged, unsure = count["passed"] + count["known"], count["inconclusive"]
+    twins = [case for case in run.cases if case.twin_result]
+    missed = sum(blind(case) for case in twins)
+    broken = sum(row.broken for row in run.oracle)
     if not run.cases:
         first = "No case was run"
     elif wrong:
         first = f"{wrong} {of} came out wrong"
     elif count["error"]:
         first = f"{count['error']} {of} could not be judged"
+    elif broken:
+        first = f"The oracle broke its promise on {broken} of {sum(row.values for row in run.oracle)} proven values"
+    elif missed:
+        first = f"{missed} of {len(twins)} broken twins {'was' if missed == 1 else 'were'} not rejected"
     elif unsure:
         first = f"Nothing was rejected, but {unsure} {of} {'is' if unsure == 1 else 'are'} inconclusive"
     elif not judged:
@@ -92,12 +106,13 @@ def headline(run: Run) -> tuple[str, str]:
     words = {"surprise": "not as declared", "error": "failed to run", "known": "rejected as declared"}
     words["passed"] = "not rejected"
     counts = [f"{count[status]} {words.get(status, status)}" for status in STATUSES if count[status]]
+    counts += [f"{len(twins) - missed} of {len(twins)} broken twins rejected"] if twins else []
     return first, ", ".join(counts) or "The record is empty"
 
 
 def _tone(run: Run) -> str:
     found = {case.status for case in run.cases}
-    if found & {"rejected", "surprise", "error"}:
+    if found & {"rejected", "surprise", "error"} or any(row.broken for row in run.oracle) or any(map(blind, run.cases)):
         return "bad"
     return "care" if "inconclusive" in found or not found & {"passed", "known"} else "good"
 

@@ -15,16 +15,21 @@ from typing import Any, Literal, cast
 
 from fogproof.checks.verdict import Verdict, jsonable
 from fogproof.errors import InvalidInputError, shorten
+from fogproof.oracle_error import OracleError
+from fogproof.plan import Plan
 from fogproof.reports.files import write_file
 from fogproof.reports.findings import parse_figure
 from fogproof.reports.text import visible
+from fogproof.verify import TwinResult
 
 SCHEMA = "fogproof/results/1"
 RESULTS = "results.json"
 COLUMNS = (
     *("name", "title", "kind", "status", "expected", "outcome", "p_value"),
     *("resolution_kind", "resolution", "resolution_miss", "samples", "seconds", "seed"),
-    *("reason", "source", "reference", "twin", "reproduce"),
+    *("cause", "rejected_by", "reason", "source", "reference"),
+    *("twin", "twin_outcome", "twin_rejected_by", "twin_p_value", "twin_samples"),
+    *("terms", "solver", "estimator", "reproduce"),
 )
 
 Status = Literal["surprise", "rejected", "error", "inconclusive", "known", "skipped", "passed"]
@@ -46,6 +51,8 @@ class Case:
     reproduce: str
     seconds: float
     verdict: Verdict | None = None
+    twin_result: TwinResult | None = None
+    plan: Plan | None = None
 
 
 @dataclass(frozen=True)
@@ -63,6 +70,7 @@ class Run:
     seconds: float
     exit_code: int
     cases: tuple[Case, ...]
+    oracle: tuple[OracleError, ...] = ()
 
 
 def parse_record(record: Any, origin: str = "record") -> Run:
@@ -139,6 +147,8 @@ def write_csv(run: Run, folder: str | Path) -> Path:
 
 def _row(case: Case, run: Run) -> dict[str, Any]:
     verdict, resolution = case.verdict, case.verdict.resolution if case.verdict else None
+    twin, plan = case.twin_result, case.plan
+    rejecting = [finding.check for finding in verdict.findings if finding.outcome == "rejected"] if verdict else []
     values = {
         "outcome": verdict and verdict.outcome,
         "p_value": verdict and verdict.p_value,
@@ -147,6 +157,15 @@ def _row(case: Case, run: Run) -> dict[str, Any]:
         "resolution_miss": resolution and resolution.miss,
         "samples": verdict and verdict.samples,
         "seed": verdict.seed if verdict else run.seed,
+        "cause": verdict and verdict.cause,
+        "rejected_by": "; ".join(rejecting),
+        "twin_outcome": twin and twin.outcome,
+        "twin_rejected_by": twin and "; ".join(twin.checks),
+        "twin_p_value": twin and twin.p_value,
+        "twin_samples": twin and twin.samples,
+        "terms": plan and "; ".join(term.name for term in plan.terms if term.kept),
+        "solver": plan and plan.solver,
+        "estimator": plan and plan.estimator,
     }
     return {name: values[name] if name in values else getattr(case, name) for name in COLUMNS}
 

@@ -21,7 +21,10 @@ Points = Sequence[tuple[float, float]]
 
 @dataclass(frozen=True)
 class Shape:
-    """Lines through `points` [px, y down], several separate ones; filled if `fill` is a colour, drawn if `stroke` is one."""
+    """Lines through points [px, y down]; filled if `fill` is a colour, drawn if `stroke` is one.
+
+    crisp  edges are not smoothed: cells that touch show no seam
+    """
 
     paths: Sequence[Points]
     stroke: str = ""
@@ -29,6 +32,7 @@ class Shape:
     dash: tuple[float, float] | None = None
     fill: str = ""
     opacity: float = 1.0
+    crisp: bool = False
 
 
 @dataclass(frozen=True)
@@ -104,6 +108,8 @@ def _svg(shape: Mark | Group) -> str:
         look += f' stroke="{shape.stroke}" stroke-width="{shape.width:g}" stroke-linejoin="round"'
         if shape.dash:
             look += f' stroke-dasharray="{shape.dash[0]:g} {shape.dash[1]:g}"'
+    if shape.crisp:
+        look += ' shape-rendering="crispEdges"'
     if shape.opacity < 1:
         look += f' opacity="{shape.opacity:g}"'
     return f'<path d="{d}"{look}/>'

@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 
 _STATUSES = {"surprise": "!", "rejected": "✗", "error": "⚠", "inconclusive": "?", "known": "⚑", "skipped": "–"}
 _CHANGES = {"worse": "✗", "mended": "✓", "changed": "≠", "new": "+", "gone": "–", "same": "="}
-_MARKS = _STATUSES | {"passed": "✓"} | _CHANGES
+_TRUST = {"kept": "✓", "broken": "✗", "caught": "✓", "blind": "✗"}
+_MARKS = _STATUSES | {"passed": "✓"} | _CHANGES | _TRUST
 
 
 def fill(template: str, **values: Any) -> str:

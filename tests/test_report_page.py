@@ -159,7 +159,7 @@ def test_headline(statuses, words, tmp_path):
 )
 def test_finding_is_told_whole(finding, words, tmp_path):
     one = case("a") | {"verdict": Verdict((finding,), 1e-6, 10, 1).to_dict()}
-    assert words in Page(write_report(record([one]), tmp_path)).words.replace("\n", " ")
+    assert words in Page(write_report(record([one]), tmp_path)).words.replace("\n", " ").replace("\xa0", " ")
 
 
 def test_page_of_known_finding_leaves_its_p_values_out(tmp_path):
