@@ -1,8 +1,10 @@
-"""Colours of every figure: Okabe and Ito's, which differ in every common colour blindness, and by lightness in print."""
+"""Colours of every figure: the first three are Okabe and Ito's, which differ in every common colour blindness, and by lightness
+in print; further ones never stand without marks of different shapes.
+"""
 
 INK, GRID, PAPER = "#1b1f24", "#cfd6dd", "#fffffe"
 EXPECTED, OBSERVED, THIRD = "#d55e00", "#0072b2", "#009e73"
-FOURTH, FIFTH, SIXTH = "#cc79a7", "#e69f00", "#56b4e9"
+FOURTH, FIFTH, SIXTH = "#a6448c", "#b87a00", "#57606a"
 
 ON_PAGE = {
     INK: "var(--ink)",
@@ -11,6 +13,9 @@ ON_PAGE = {
     EXPECTED: "var(--warm)",
     OBSERVED: "var(--cool)",
     THIRD: "var(--third)",
+    FOURTH: "var(--fourth)",
+    FIFTH: "var(--fifth)",
+    SIXTH: "var(--soft)",
 }
 """The variables of the page, light or dark, that stand for them there."""
 

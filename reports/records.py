@@ -11,7 +11,7 @@ import io
 import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal, cast
+from typing import Any, Literal, TypeVar, cast
 
 from fogproof.checks.verdict import Verdict, jsonable
 from fogproof.errors import InvalidInputError, shorten
@@ -32,6 +32,7 @@ COLUMNS = (
     *("terms", "solver", "estimator", "reproduce"),
 )
 
+T = TypeVar("T")
 Status = Literal["surprise", "rejected", "error", "inconclusive", "known", "skipped", "passed"]
 
 
@@ -75,23 +76,8 @@ class Run:
 
 def parse_record(record: Any, origin: str = "record") -> Run:
     """Return the record as dataclasses; `origin` is where it came from, for the message of an `InvalidInputError`."""
-    import pydantic
-
-    if not isinstance(record, dict) or not isinstance(record.get("schema"), str):
-        raise InvalidInputError(f"{origin}: is not the record of a run, it has no text key 'schema'", "schema")
-    if record["schema"] != SCHEMA:
-        ours = record["schema"].startswith("fogproof/results/")
-        fix = "read it with the fogproof that wrote it" if ours else "it was not written by fogproof"
-        raise InvalidInputError(
-            f"{origin}: schema must be {SCHEMA!r}, got {shorten(record['schema'])}; {fix}", "schema"
-        )
-    try:
-        run = pydantic.TypeAdapter(Run).validate_python(record)
-    except pydantic.ValidationError as error:
-        fault = error.errors()[0]
-        place = ".".join(str(part) for part in fault["loc"] if part != "dataclass-args")
-        said = "is missing" if fault["type"] == "missing" else f"{fault['msg']}, got {shorten(fault['input'])}"
-        raise InvalidInputError(f"{origin}: {place} {said[0].lower()}{said[1:]}", place) from None
+    check_schema(record, origin)
+    run = validated(Run, record, origin)
     names: set[str] = set()
     for number, case in enumerate(run.cases):
         if case.name in names:
@@ -103,6 +89,31 @@ def parse_record(record: Any, origin: str = "record") -> Run:
     return run
 
 
+def check_schema(record: Any, origin: str) -> None:
+    """Raise `InvalidInputError` if this is not a record that this version reads."""
+    if not isinstance(record, dict) or not isinstance(record.get("schema"), str):
+        raise InvalidInputError(f"{origin}: is not the record of a run, it has no text key 'schema'", "schema")
+    if record["schema"] != SCHEMA:
+        ours = record["schema"].startswith("fogproof/results/")
+        fix = "read it with the fogproof that wrote it" if ours else "it was not written by fogproof"
+        raise InvalidInputError(
+            f"{origin}: schema must be {SCHEMA!r}, got {shorten(record['schema'])}; {fix}", "schema"
+        )
+
+
+def validated(kind: type[T], record: Any, origin: str) -> T:
+    """Return `record` as the dataclass `kind`; the first fault becomes an `InvalidInputError` that names its place."""
+    import pydantic
+
+    try:
+        return pydantic.TypeAdapter(kind).validate_python(record)
+    except pydantic.ValidationError as error:
+        fault = error.errors()[0]
+        place = ".".join(str(part) for part in fault["loc"] if part != "dataclass-args")
+        said = "is missing" if fault["type"] == "missing" else f"{fault['msg']}, got {shorten(fault['input'])}"
+        raise InvalidInputError(f"{origin}: {place} {said[0].lower()}{said[1:]}", place) from None
+
+
 def read_record(folder: str | Path) -> dict[str, Any]:
     """Return the record in `folder`, or say in an `InvalidInputError` why there is none."""
     path = Path(folder) / RESULTS
@@ -110,9 +121,8 @@ def read_record(folder: str | Path) -> dict[str, Any]:
         text = path.read_text(encoding="utf-8")
     except FileNotFoundError:
         there = "the folder has no" if Path(folder).is_dir() else f"there is no folder {folder} with a"
-        raise InvalidInputError(
-            f"cannot read {path}: {there} {RESULTS}; make one with: fogproof verify --report {folder}", str(path)
-        ) from None
+        make = f"'fogproof verify --report {folder}' or 'fogproof study STUDY.toml -o {folder}'"
+        raise InvalidInputError(f"cannot read {path}: {there} {RESULTS}; make one with {make}", str(path)) from None
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
         raise InvalidInputError(f"cannot read {path}: {reason}", str(path)) from None
@@ -122,7 +132,7 @@ def read_record(folder: str | Path) -> dict[str, Any]:
         ends = isinstance(error, json.JSONDecodeError) and error.pos >= len(text.rstrip())
         reason = "it ends in the middle of a record" if ends else f"it is not JSON ({error})"
         raise InvalidInputError(f"cannot read {path}: {reason}; run the checks again", str(path)) from None
-    parse_record(record, str(path))
+    check_schema(record, str(path))
     return cast(dict[str, Any], record)
 
 

@@ -29,7 +29,7 @@ def command(folder: Path, older: Path | None) -> int:
 
     record = read_record(folder)
     before = read_record(older) if older else None
-    page = write_report(record, folder)
+    page = write_report(record, folder, keep=True)
     if before is not None:
         page = write_comparison(before, record, folder)
     click.echo(str(page))
