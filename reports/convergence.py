@@ -81,7 +81,7 @@ class Convergence:
         lowest = min(self.curves, key=lambda curve: curve.error[-1])
         where = self.across.partition(" [")[0]
         return (
-            f"Error over {where} of {len(self.curves)} estimators, both logarithmic, with bands at {self.confidence:.0%} confidence. "
+            f"Error over {where} of {len(self.curves)} estimators, both logarithmic, with {self.confidence:.0%} confidence bands. "
             f"The lowest at its end is {label(lowest.name, 60)}: {lowest.error[-1]:.2g}."
         )
 

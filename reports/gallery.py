@@ -12,9 +12,10 @@ from fogproof.checks import batch_generator
 from fogproof.errors import InvalidInputError, shorten
 from fogproof.reports.files import write_file
 from fogproof.reports.gallery_airlight import FoggyScene, Glow, SamplesAroundALight
-from fogproof.reports.gallery_media import Fog, Transmittances
+from fogproof.reports.gallery_media import Fog, Transmittances, closed_media, tracked_media
 from fogproof.reports.gallery_phase import Approximation, Linear, Polar, SphereSizes
 from fogproof.reports.gallery_sky import SkyAndSunset
+from fogproof.reports.gallery_tracking import Collisions
 from fogproof.reports.pictures import Picture
 from fogproof.reports.plots import Plot, render_plot
 from fogproof.reports.templates import fill
@@ -31,7 +32,9 @@ def drawings(seed: int) -> dict[str, tuple[str, Plot]]:
         "phase-henyey-greenstein": ("Henyey-Greenstein, sampled", Linear(stream("linear"))),
         "phase-schlick": ("Henyey-Greenstein and Schlick", Approximation()),
         "phase-mie": ("Lorenz-Mie at three sizes", SphereSizes()),
-        "transmittance": ("Transmittance of each medium", Transmittances(stream("transmittance"))),
+        "transmittance": ("Transmittance in closed form", Transmittances(stream("closed"), closed_media())),
+        "transmittance-tracked": ("Transmittance by tracking", Transmittances(stream("tracked"), tracked_media())),
+        "delta-tracking": ("Delta tracking's collisions", Collisions(stream("collisions"))),
         "fog": ("Fog over distance", Fog(stream("fog"))),
         "foggy-scene": ("A scene in fog", FoggyScene()),
         "samples-around-a-light": ("Samples around a light", SamplesAroundALight(stream("samples"))),
