@@ -14,7 +14,16 @@ from fogproof.reports.files import prepare_folder
 from fogproof.reports.gallery import write_gallery
 from fogproof.reports.junit import write_junit
 from fogproof.reports.page import write_page
-from fogproof.reports.records import SCHEMA, Run, check_schema, parse_record, read_record, write_csv, write_record
+from fogproof.reports.records import (
+    RESULTS,
+    SCHEMA,
+    Run,
+    check_schema,
+    load_record,
+    parse_record,
+    write_csv,
+    write_record,
+)
 from fogproof.reports.study_page import write_study_page
 from fogproof.reports.study_records import as_run, parse_study
 
@@ -38,6 +47,7 @@ def write_report(record: dict[str, Any], folder: str | Path, *, keep: bool = Fal
     """
     if not keep:
         write_record(record, folder)
+    check_schema(record, "record")
     if _is_study(record):
         study = parse_study(record)
         write_junit(as_run(study), folder)
@@ -46,6 +56,13 @@ def write_report(record: dict[str, Any], folder: str | Path, *, keep: bool = Fal
     write_csv(run, folder)
     write_junit(run, folder)
     return write_page(run, folder)
+
+
+def read_record(folder: str | Path) -> dict[str, Any]:
+    """Return the record in `folder`, or say in an `InvalidInputError` why there is none that can be shown."""
+    record = load_record(folder)
+    _run(record, str(Path(folder) / RESULTS))
+    return record
 
 
 def write_comparison(before: dict[str, Any], after: dict[str, Any], folder: str | Path) -> Path:

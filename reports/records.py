@@ -114,15 +114,15 @@ def validated(kind: type[T], record: Any, origin: str) -> T:
         raise InvalidInputError(f"{origin}: {place} {said[0].lower()}{said[1:]}", place) from None
 
 
-def read_record(folder: str | Path) -> dict[str, Any]:
-    """Return the record in `folder`, or say in an `InvalidInputError` why there is none."""
+def load_record(folder: str | Path) -> dict[str, Any]:
+    """Return what stands in `folder/results.json`, or say in an `InvalidInputError` why that is nothing."""
     path = Path(folder) / RESULTS
     try:
         text = path.read_text(encoding="utf-8")
     except FileNotFoundError:
         there = "the folder has no" if Path(folder).is_dir() else f"there is no folder {folder} with a"
         make = f"'fogproof verify --report {folder}' or 'fogproof study STUDY.toml -o {folder}'"
-        raise InvalidInputError(f"cannot read {path}: {there} {RESULTS}; make one with {make}", str(path)) from None
+        raise InvalidInputError(f"cannot read {path}: {there} {RESULTS}; {make} make one", str(path)) from None
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
         raise InvalidInputError(f"cannot read {path}: {reason}", str(path)) from None

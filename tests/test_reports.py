@@ -51,7 +51,7 @@ def test_report_has_all_its_files(tmp_path):
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        (None, "make one with: fogproof verify"),
+        (None, "the folder has no results.json; 'fogproof verify --report "),
         (b"", "ends in the middle"),
         (b'{"schema": "fogproof/results/1", "cases": [{"na', "not JSON"),
         (b'{"schema": "fogproof/results/1", "cases": [', "ends in the middle"),
