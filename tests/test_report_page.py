@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import struct
+from dataclasses import replace
 from urllib.parse import unquote
 from xml.etree import ElementTree
 
@@ -11,7 +12,7 @@ import numpy as np
 import pytest
 from report_records import HOSTILE, Page, bins_figure, case, mean_figure, record, typical, verdict, z_figure
 
-from fogproof.checks.verdict import Finding, Resolution, Verdict, jsonable
+from fogproof.checks.verdict import Finding, Interval, Resolution, Verdict, jsonable
 from fogproof.reports import page as page_module
 from fogproof.reports import write_report
 from fogproof.reports.findings import parse_figure
@@ -160,6 +161,71 @@ def test_headline(statuses, words, tmp_path):
 def test_finding_is_told_whole(finding, words, tmp_path):
     one = case("a") | {"verdict": Verdict((finding,), 1e-6, 10, 1).to_dict()}
     assert words in Page(write_report(record([one]), tmp_path)).words.replace("\n", " ").replace("\xa0", " ")
+
+
+BLIND = {"outcome": "not rejected", "checks": [], "samples": 1_000_000}
+LUCKLESS = {"outcome": "error", "checks": [], "samples": 0, "reason": "ZeroDivisionError: division by zero"}
+
+
+@pytest.mark.parametrize(
+    ("changes", "oracle", "first", "words"),
+    [
+        ({}, {}, "The one case came out as expected", "rejected by mean cosine, chi-square in mu, p = 1e-80"),
+        ({"twin_result": None}, {}, "The one case came out as expected", "They were not run here"),
+        ({"twin_result": BLIND}, {}, "1 of 1 broken twins was not rejected", "a pass of this case proves nothing"),
+        ({"twin_result": LUCKLESS}, {}, "1 of 1 broken twins was not rejected", "ZeroDivisionError"),
+        (
+            {},
+            {"broken": 2},
+            "The oracle broke its promise on 2 of 22 proven values",
+            "further from the truth than it says",
+        ),
+        (
+            {},
+            {"share": "inf", "broken": 22},
+            "The oracle broke its promise on 22 of 22 proven values",
+            "broken 22 times",
+        ),
+    ],
+)
+def test_what_makes_verdicts_worth_trusting_is_told(changes, oracle, first, words, tmp_path):
+    one = record([case("a", kind="estimator", figures=False, **changes)])
+    one["oracle"] = [one["oracle"][0] | oracle]
+    told = " ".join(Page(write_report(one, tmp_path)).words.split())
+    assert headline(parse_record(one))[0] == first
+    assert words in told
+    assert "What each scene needs" in told
+    assert "nothing is gained along the ray" in told
+    assert ("Nothing. How small" in told) == (first == "The one case came out as expected")
+    assert ("<failure" in (tmp_path / "junit.xml").read_text()) == ("twin" in first)
+
+
+def test_older_records_without_twins_and_oracle_are_read(tmp_path):
+    old = record([case("a")])
+    del old["oracle"], old["cases"][0]["twin_result"], old["cases"][0]["plan"]
+    words = Page(write_report(old, tmp_path)).words
+    assert "The oracle's own error" not in words
+    assert "They were not run here" in words
+
+
+def test_every_figure_says_how_to_make_it_again(typical_page):
+    page = Page(typical_page)
+    captions = re.findall(r"<figcaption>(.*?)</figcaption>", page.html, re.S)
+    assert len(captions) == len(page.all("figure"))
+    assert all("Again: <code>fogproof verify" in caption for caption in captions)
+
+
+def test_cause_place_and_size_of_a_misfit_are_told(tmp_path):
+    finding = (
+        Finding("c", "rejected", "m", 1e-9, 0.1, effect=0.5).located("mu below 0: too many").because("wrong measure")
+    )
+    finding = replace(finding, interval=Interval(0.4, 0.6, 0.99))
+    one = case("a", "rejected") | {
+        "verdict": Verdict((finding,), 1e-6, 10, 1, cause="wrong measure", reproduce="f(1)").to_dict()
+    }
+    words = " ".join(Page(write_report(record([one]), tmp_path)).words.split())
+    for text in ("Likely cause: wrong measure", "Mu below 0: too many.", "in [0.4, 0.6] at 99%", "f(1)"):
+        assert text in words
 
 
 def test_page_of_known_finding_leaves_its_p_values_out(tmp_path):

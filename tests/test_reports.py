@@ -167,6 +167,9 @@ def test_csv_has_one_row_a_case(tmp_path):
             assert float(row["p_value"]) == one["verdict"]["p_value"]
             assert float(row["resolution"]) == one["verdict"]["resolution"]["value"]
             assert row["samples"] == "1000000"
+            assert row["twin_outcome"] == "rejected"
+            assert row["twin_rejected_by"] == "mean cosine; chi-square in mu"
+            assert row["terms"] == ("attenuation" if one["plan"] else "")
         else:
             assert row["p_value"] == row["outcome"] == ""
 

@@ -1,0 +1,39 @@
+"""The oracle's own error is measured against proven values, and a promise that is broken is seen."""
+
+import math
+
+import numpy as np
+import pytest
+
+from fogproof.analytic.golden import Golden
+from fogproof.contracts import Reference
+from fogproof.oracle_error import compare, oracle_errors
+
+
+def test_every_quantity_keeps_its_promise_on_the_golden_tables():
+    rows = oracle_errors()
+    assert {row.quantity for row in rows} >= {"transmittance", "ambient_fog", "airlight_integral"}
+    for row in rows:
+        assert row.broken == 0
+        assert 0 <= row.share <= 1
+        assert row.relative < 1e-14
+
+
+@pytest.mark.parametrize(
+    ("proven", "radius", "value", "error", "relative", "share"),
+    [
+        ("1", "0", 1.5, 1.0, 0.5, 0.5),
+        ("1", "0", 1.5, 0.25, 0.5, 2.0),
+        ("1", "0", 1.0, 0.0, 0.0, 0.0),
+        ("1", "0", 1.5, 0.0, 0.5, math.inf),
+        ("0", "0", 0.0, 0.0, 0.0, 0.0),
+        ("-2e0", "1e-1", -2.0, 1.0, 0.1 / 2.1, 0.0),
+        ("inf", "0", math.inf, 0.0, 0.0, 0.0),
+        ("inf", "0", 1e300, 1.0, math.inf, math.inf),
+        ("1", "0", math.nan, 1.0, math.inf, math.inf),
+        ("1", "0", 7.0, math.inf, 6.0, 0.0),
+    ],
+)
+def test_distance_from_the_truth(proven, radius, value, error, relative, share):
+    found = compare(Golden({}, proven, radius), Reference(np.array(value), np.array(error), "", ""))
+    assert found == pytest.approx((relative, share), rel=1e-12)
