@@ -37,11 +37,15 @@ _RED_TO_BLUE = [
 
 def diverging(value: float) -> str:
     """Return the colour of a value from -1 (blue) over 0 (nearly white) to 1 (red), one of 41; grey if it is not a number."""
-    if value != value:
-        return "#888888"
-    place = round(20 * min(max(value, -1.0), 1.0)) / 20
+    return _DIVERGING[round(20 * min(max(value, -1.0), 1.0))] if value == value else "#888888"
+
+
+def _mixed(place: float) -> str:
     at = 5 - 5 * place
     index = min(int(at), 9)
     pair = [[int(colour[k : k + 2], 16) for k in (0, 2, 4)] for colour in _RED_TO_BLUE[index : index + 2]]
     mixed = [round(a + (b - a) * (at - index)) for a, b in zip(*pair, strict=True)]
     return "#" + "".join(f"{part:02x}" for part in mixed)
+
+
+_DIVERGING = {i: _mixed(i / 20) for i in range(-20, 21)}

@@ -8,6 +8,7 @@ from fogproof.errors import InvalidInputError, shorten
 from fogproof.reports.bins import Bins
 from fogproof.reports.pictures import Chart
 from fogproof.reports.running_mean import RunningMean
+from fogproof.reports.validation import adapter
 from fogproof.reports.z_map import ZMap
 
 KINDS = {"z-map": ZMap, "bins": Bins, "mean": RunningMean}
@@ -23,7 +24,7 @@ def parse_figure(figure: dict[str, Any], origin: str = "figure") -> Chart:
             f"{origin}.kind must be one of {', '.join(KINDS)}, got {shorten(kind)}", f"{origin}.kind"
         )
     try:
-        return cast(Chart, pydantic.TypeAdapter(KINDS[kind]).validate_python(figure))
+        return cast(Chart, adapter(KINDS[kind]).validate_python(figure))
     except pydantic.ValidationError as error:
         fault = error.errors()[0]
         place = ".".join([origin, *(str(part) for part in fault["loc"])])

@@ -23,7 +23,7 @@ Points = Sequence[tuple[float, float]]
 class Shape:
     """Lines through points [px, y down]; filled if `fill` is a colour, drawn if `stroke` is one.
 
-    crisp  edges are not smoothed: cells that touch show no seam
+    crisp  filled rectangles whose edges are not smoothed: cells that touch show no seam
     """
 
     paths: Sequence[Points]

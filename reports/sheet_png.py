@@ -70,7 +70,10 @@ def _draw(image: Image.Image, shapes: Sequence[Mark | Group], scale: float, corn
                 alpha = f"{round(255 * shape.opacity):02x}" if shape.opacity < 1 else ""
                 for points in shape.paths:
                     line = places(points)
-                    if shape.fill and len(line) > 2:
+                    if shape.crisp:  # a cell: its first and third corner are opposite
+                        (a, b), (c, d) = line[0], line[2]
+                        pen.rectangle((min(a, c), min(b, d), max(a, c), max(b, d)), shape.fill)
+                    elif shape.fill and len(line) > 2:
                         pen.polygon(line, fill=shape.fill + alpha)
                     if shape.stroke:
                         thick = max(round(scale * shape.width), 1)
