@@ -77,10 +77,9 @@ def timed(what: str, one: dict[str, Any], folder: Path, seconds: float = 0.0) ->
     processor = time.process_time() - processor
     figures = list((folder / "figures").iterdir())
     megabytes = sum(path.stat().st_size for path in figures) / 1e6
-    print(
-        f"{what}: made in {made:.1f} s ({processor:.1f} s of processor time for the page), {page.stat().st_size / 1e6:.1f} MB, opens in {opened(page):.2f} s; "
-        f"{len(figures)} files of figures, {megabytes:.1f} MB"
-    )
+    size = page.stat().st_size / 1e6
+    print(f"{what}: made in {made:.1f} s ({processor:.1f} s of processor time for the page), {size:.1f} MB")
+    print(f"    opens in {opened(page):.2f} s; {len(figures)} files of figures, {megabytes:.1f} MB")
 
 
 def study(count: int, folder: Path) -> None:

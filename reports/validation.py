@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
 from functools import cache
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 if TYPE_CHECKING:
     from pydantic import TypeAdapter
@@ -12,13 +11,13 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 
+def adapter(kind: type[T]) -> TypeAdapter[T]:
+    """Return the validator of a dataclass, the same one each time."""
+    return cast("TypeAdapter[T]", _adapter(kind))
+
+
 @cache
-def _adapter(kind: Hashable) -> TypeAdapter[Any]:
+def _adapter(kind: Any) -> Any:
     from pydantic import TypeAdapter
 
     return TypeAdapter(kind)
-
-
-def adapter(kind: type[T]) -> TypeAdapter[T]:
-    """Return the validator of a dataclass, the same one each time."""
-    return _adapter(kind)
