@@ -37,8 +37,12 @@ class BeforeAfter:
         axes.line(ends, ends, EXPECTED, DASHED)
         axes.points(before, after, OBSERVED)
         far = np.argsort(-np.abs(np.log(ratio)), kind="stable")[:_NAMED]
+        named: list[tuple[float, float]] = []
         for index in far[np.abs(np.log2(ratio[far])) > 1]:
             (x, y), right = axes.at(before[[index]], after[[index]])[0], scale(before[[index]])[0] < 0.5
+            if any(abs(y - other) < 14 and abs(x - beside) < 200 for beside, other in named):
+                continue  # one name over another is none
+            named.append((x, y))
             name = label(self.names[index], 24)
             sheet.shapes.append(Words(x + (7 if right else -7), y - 6, name, INK, "start" if right else "end", size=12))
         middle = float(np.exp(np.median(np.log(ratio))))

@@ -8,11 +8,12 @@ from math import inf
 from pathlib import Path
 from typing import Any, get_args
 
+from fogproof.checks.verdict import Finding
 from fogproof.reports.files import write_file
 from fogproof.reports.findings import parse_figure
 from fogproof.reports.p_values import PValues
 from fogproof.reports.pictures import Picture, render
-from fogproof.reports.records import Run, Status
+from fogproof.reports.records import Case, Run, Status
 from fogproof.reports.resolutions import Resolutions
 from fogproof.reports.summaries import blind, catches, needs, systems
 from fogproof.reports.templates import cases as some_cases
@@ -26,6 +27,10 @@ STATUSES: tuple[Status, ...] = get_args(Status)
 """From what needs attention to what does not: the order of the page."""
 
 
+OUTCOMES = ("rejected", "inconclusive", "not rejected")
+"""The order in which the findings of a case are told."""
+
+
 @dataclass(frozen=True)
 class Shown:
     """A figure as the page has it: `svg` is empty if it is only linked."""
@@ -37,7 +42,7 @@ class Shown:
 def write_page(run: Run, folder: str | Path) -> Path:
     """Write `folder/index.html` and its figures as `folder/figures/*.png` and `*.svg`; return the page's path.
 
-    A pass has its first figure alone: the others are figures of noise.
+    A pass has its first figure alone: the others are figures of noise. Findings about the same data share one figure.
     """
     folder = Path(folder)
     cases = sorted(run.cases, key=lambda case: STATUSES.index(case.status))
@@ -47,11 +52,10 @@ def write_page(run: Run, folder: str | Path) -> Path:
     shown: dict[tuple[str, int], Shown] = {}
     room = INLINE_BYTES
     for case in cases:
-        drawn = [(i, f) for i, f in enumerate(case.verdict.findings if case.verdict else ()) if f.figure is not None]
-        passed = case.status == "passed"
-        for index, finding in drawn[:1] if passed else drawn:
+        drawn = _figures(case)
+        for index, finding, figure in drawn[:1] if case.status == "passed" else drawn:
             stem = file_stem(case.name, finding.check, str(index))
-            picture = render(parse_figure(finding.figure or {}), stem)
+            picture = render(parse_figure(figure), stem)
             picture.save(folder / "figures")
             svg = picture.on_page
             room -= len(svg)
@@ -115,6 +119,17 @@ def _tone(run: Run) -> str:
     if found & {"rejected", "surprise", "error"} or any(row.broken for row in run.oracle) or any(map(blind, run.cases)):
         return "bad"
     return "care" if "inconclusive" in found or not found & {"passed", "known"} else "good"
+
+
+def _figures(case: Case) -> list[tuple[int, Finding, dict[str, Any]]]:
+    """Return (index, finding, figure) of the different figures of a case, in the order in which the page tells the findings."""
+    findings = list(enumerate(case.verdict.findings if case.verdict else ()))
+    findings.sort(key=lambda pair: OUTCOMES.index(pair[1].outcome))
+    found: list[tuple[int, Finding, dict[str, Any]]] = []
+    for index, finding in findings:
+        if finding.figure is not None and all(finding.figure != figure for _, _, figure in found):
+            found.append((index, finding, finding.figure))
+    return found
 
 
 def _overview(run: Run) -> Iterable[tuple[str, Any, tuple[float, float]]]:

@@ -13,7 +13,8 @@ T = TypeVar("T")
 
 def adapter(kind: type[T]) -> TypeAdapter[T]:
     """Return the validator of a dataclass, the same one each time."""
-    return cast("TypeAdapter[T]", _adapter(kind))
+    made: TypeAdapter[T] = _adapter(cast(Any, kind))
+    return made
 
 
 @cache

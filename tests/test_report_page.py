@@ -224,7 +224,7 @@ def test_cause_place_and_size_of_a_misfit_are_told(tmp_path):
         "verdict": Verdict((finding,), 1e-6, 10, 1, cause="wrong measure", reproduce="f(1)").to_dict()
     }
     words = " ".join(Page(write_report(record([one]), tmp_path)).words.split())
-    for text in ("Likely cause: wrong measure", "Mu below 0: too many.", "in [0.4, 0.6] at 99%", "f(1)"):
+    for text in ("Likely cause: wrong measure", "Where: mu below 0: too many.", "in [0.4, 0.6] at 99%", "f(1)"):
         assert text in words
 
 
