@@ -4,8 +4,11 @@ PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 
+# Runs keep all cores busy with work of their own; threads inside small matrix products would only wait for each other.
+export OPENBLAS_NUM_THREADS := 1
+
 .DEFAULT_GOAL := help
-.PHONY: help verify gallery test lint format calibrate oracle-hard golden bench clean
+.PHONY: help verify gallery test lint format calibrate repeat oracle-hard golden bench clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -32,7 +35,10 @@ format: $(VENV)/.installed-lint  ## let ruff rewrite what it can
 calibrate: $(VENV)/.installed-test  ## how often the checks reject what is right; an hour, rewrites docs/calibration.md
 	$(BIN)/python tools/calibrate.py
 
-oracle-hard: $(VENV)/.installed-test  ## the airlight integral on 10^5 hard cases against ball arithmetic
+repeat: $(VENV)/.installed-test  ## 20 runs of the catalogue with fresh seeds: no false alarm
+	$(BIN)/python tools/repeat_verify.py
+
+oracle-hard: $(VENV)/.installed-test  ## the oracle on 10^5 hard cases against many-digit arithmetic
 	$(BIN)/python tools/oracle_hard.py
 
 bench: $(VENV)/.installed-test  ## benchmarks, as ratios of interleaved runs

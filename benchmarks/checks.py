@@ -16,7 +16,8 @@ from typing import Any
 
 import numpy as np
 
-from fogproof.checks import batch_generator, batch_sizes, check_estimator, check_sampler
+from fogproof.checks import Subject, batch_generator, batch_sizes, check_estimator, check_sampler, fresh_seed
+from fogproof.checks.prepared import prepare
 from fogproof.contracts import Reference
 from fogproof.domains import HalfLine, Interval, UnitSphere
 from fogproof.estimators import Directions, FreePath
@@ -61,6 +62,27 @@ def draw_all(sample: Any, dimensions: int, samples: int) -> None:
         sample(batch_generator(1, "samples", 1, index).random((n, dimensions)))
 
 
+def _misfits() -> dict[str, Subject]:
+    """Densities whose integral is wrong by 1e-6 or a little more, to be found without a single tested sample."""
+    hg, tilted, path = Directions(HenyeyGreenstein(0.8)), Directions(HenyeyGreenstein(0.99), TILTED), FreePath(1.4, 0.5)
+
+    def notched(depth: float) -> Callable[[np.ndarray], np.ndarray]:
+        return lambda x: np.where(np.abs(x - 0.637) < 5e-5, depth, 1.0)
+
+    def first(u: np.ndarray) -> np.ndarray:
+        return u[:, 0]
+
+    return {
+        "Henyey-Greenstein, x (1 + 1e-6)": Subject(hg.sample, lambda x: hg.pdf(x) * (1 + 1e-6), UnitSphere(), 2),
+        "g = 0.99, tilted, x (1 - 1e-6)": Subject(tilted.sample, lambda x: tilted.pdf(x) * (1 - 1e-6), UnitSphere(), 2),
+        "free path, x (1 + 2e-6)": Subject(
+            path.sample, lambda x: path.pdf(x) * (1 + 2e-6), Interval(0, 0.5), 1, path.atoms
+        ),
+        "a hole of width 1e-4": Subject(first, notched(0.0), Interval(0, 1), 1),
+        "a dent of width 1e-4, 1 % deep": Subject(first, notched(0.99), Interval(0, 1), 1),
+    }
+
+
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -94,6 +116,11 @@ def main() -> None:
 
         taken, memory = fastest(estimate, arguments.repeat), peak(estimate)
         print(f"{'estimator, exponential':28} {samples:9} {'':9} {taken * 1e3:9.1f} {'':13} {'':6} {memory:6.1f}")
+    print(f"\n{'normalisation':34} {'ms':>6}  found")
+    for name, subject in _misfits().items():
+        finding = prepare(subject, 1_000_000, fresh_seed()).normalisation(0)
+        taken = fastest(lambda subject=subject: prepare(subject, 1_000_000, fresh_seed()), arguments.repeat)
+        print(f"{name:34} {taken * 1e3:6.1f}  {finding.outcome}: {finding.message}")
 
 
 if __name__ == "__main__":

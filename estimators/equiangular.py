@@ -10,7 +10,7 @@ import numpy as np
 from fogproof.contracts import Draw
 from fogproof.domains import HalfLine, Interval
 from fogproof.errors import InvalidValueError
-from fogproof.estimators.blocks import blocks
+from fogproof.estimators.blocks import IN_PLACE, blocks
 from fogproof.validate import number
 
 
@@ -52,7 +52,7 @@ class Equiangular:
     def sample(self, u: np.ndarray) -> Draw:
         """Map uniforms (n, 1) to positions [m] and their density [1/m].
 
-        t = h (a + h T)/(h - a T), T the tangent of the angle from a to t: adding the two angles first would lose the digits of
+        t = (a + h T)/(1 - (a/h) T), T the tangent of the angle from a to t: adding the two angles first would lose the digits of
         a short segment far from the light.
         """
         h, a, angle = self.h, self.a, self.angle
@@ -60,20 +60,18 @@ class Equiangular:
         b = farthest if np.isinf(self.b) else self.b
         x, pdf = np.empty(len(u), u.dtype), np.empty(len(u), u.dtype)
         with np.errstate(divide="ignore", over="ignore"):
-            for block in blocks(len(u)):
+            for block in blocks(len(u), IN_PLACE):
                 t, p = x[block], pdf[block]
                 np.multiply(u[block, 0], angle, out=t)
                 np.tan(t, out=t)
-                np.multiply(t, -a, out=p)
-                p += h
+                np.multiply(t, -a / h, out=p)
+                p += 1
                 t *= h
                 t += a
-                t *= h
                 t /= p
                 if np.isinf(self.b):
                     np.copyto(t, b, where=(t < a) & (u[block, 0] > 0.5))  # rounding went past infinity
-                np.maximum(t, a, out=t)
-                np.minimum(t, b, out=t)
+                np.clip(t, a, b, out=t)
                 np.multiply(t, t, out=p)
                 p += h * h
                 np.divide(h / angle, p, out=p)

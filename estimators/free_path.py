@@ -10,7 +10,7 @@ import numpy as np
 from fogproof.contracts import Draw
 from fogproof.domains import HalfLine, Interval
 from fogproof.errors import InvalidValueError
-from fogproof.estimators.blocks import blocks
+from fogproof.estimators.blocks import IN_PLACE, blocks
 from fogproof.estimators.extinction import Constant, Extinction, as_extinction
 from fogproof.validate import number
 
@@ -54,7 +54,7 @@ class FreePath:
         factor = 0.0
         if isinstance(extinction, Constant) and extinction.sigma_t >= np.finfo(x.dtype).tiny:
             factor = -1 / extinction.sigma_t  # dividing each depth would cost half as much as its logarithm
-        for block in blocks(len(u)):
+        for block in blocks(len(u), IN_PLACE):
             t = x[block]
             np.negative(u[block, 0], out=t)
             np.log1p(t, out=t)  # finite for every u in [0, 1)

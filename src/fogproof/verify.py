@@ -199,7 +199,6 @@ def reproduce(case: Case, seed: int, alpha: float) -> str:
 
 def _case_record(result: Result, seed: int, alpha: float) -> dict[str, Any]:
     case = result.case
-    scene = None if result.verdict is None else scene_of(case.make())
     return {
         "name": case.name,
         "title": case.title,
@@ -211,11 +210,20 @@ def _case_record(result: Result, seed: int, alpha: float) -> dict[str, Any]:
         "reference": f"fogproof.analytic: {case.oracle}",
         "twin": case.twin.error,
         "twin_result": result.twin,
-        "plan": None if scene is None else plan(scene).to_dict(),
+        "plan": None if result.verdict is None else _plan(case),
         "reproduce": reproduce(case, seed, alpha),
         "seconds": result.seconds,
         "verdict": None if result.verdict is None else result.verdict.to_dict(),
     }
+
+
+def _plan(case: Case) -> dict[str, Any] | None:
+    """Return which terms the case's scene needs, None if it is about no scene."""
+    try:
+        scene = scene_of(case.make())
+        return None if scene is None else plan(scene).to_dict()
+    except Exception:  # results are worth more than what is said beside them
+        return None
 
 
 def _environment() -> dict[str, Any]:
