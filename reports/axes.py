@@ -179,12 +179,13 @@ def mark(at: Sequence[tuple[float, float]], colour: str, marker: Marker = "dot",
 
 @dataclass(frozen=True)
 class Key:
-    """One entry of a legend; `kind` is "line", "area" or a marker."""
+    """One entry of a legend; `kind` is "line", "area" or a marker, which may stand on a line."""
 
     text: str
     colour: str
     kind: str = "line"
     dash: tuple[float, float] | None = None
+    joined: bool = False
 
 
 def legend(sheet: Sheet, keys: Sequence[Key], left: float, top: float, width: float) -> float:
@@ -195,12 +196,12 @@ def legend(sheet: Sheet, keys: Sequence[Key], left: float, top: float, width: fl
         if x > left and x + needed > left + width:
             x, y = left, y + 1.4 * FONT_SIZE
         middle = y - 0.36 * FONT_SIZE
-        if key.kind == "line":
+        if key.kind == "line" or key.joined:
             sheet.shapes.append(Shape([[(x, middle), (x + 26, middle)]], key.colour, 2, key.dash))
-        elif key.kind == "area":
+        if key.kind == "area":
             corners = [(x, middle - 5), (x + 26, middle - 5), (x + 26, middle + 5), (x, middle + 5)]
             sheet.shapes.append(Shape([corners], fill=key.colour, opacity=0.4 if key.colour != GRID else 1))
-        else:
+        elif key.kind != "line":
             sheet.shapes.append(mark([(x + 13, middle)], key.colour, key.kind, 5))  # type: ignore[arg-type]
         sheet.shapes.append(Words(x + 32, y, key.text, INK))
         x += needed + 18

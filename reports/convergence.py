@@ -52,7 +52,7 @@ class Convergence:
 
     def draw(self, sheet: Sheet) -> str:
         """Draw each curve with its confidence band, the oracle's prediction dotted, and a line of the expected slope."""
-        keys = [Key(label(c.name, 62), *_look(c.look), DASHED if c.dashed else None) for c in self.curves]
+        keys = [Key(label(c.name, 62), *_look(c.look), DASHED if c.dashed else None, joined=True) for c in self.curves]
         known = any(np.isfinite(curve.predicted).any() for curve in self.curves)
         keys += [Key("predicted by the oracle", INK, dash=_DOTTED)] if known else []
         keys += [Key(f"slope −{abs(self.slope):g}", INK, dash=(9, 5))] if self.slope else []

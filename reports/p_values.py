@@ -1,4 +1,4 @@
-"""All p-values that are uniform for right subjects, against the uniform distribution."""
+"""All p-values that are uniform for right subjects: their histogram, and one by one against the uniform distribution."""
 
 from __future__ import annotations
 
@@ -50,4 +50,33 @@ class PValues:
         return (
             f"{n} p-values that are uniform for right subjects, sorted, against their expectation; the smallest is "
             f"{min(self.p):.2g}; {int(np.sum(~inside))} lie outside the range that holds each with probability 99.9%."
+        )
+
+
+@dataclass(frozen=True)
+class PValueHistogram:
+    """How many of the exact p-values fall into each twentieth of [0, 1]."""
+
+    p: tuple[float, ...]
+    bins: int = 20
+
+    def draw(self, sheet: Sheet) -> str:
+        """Draw the counts, and the range that holds each with probability 99.9% if all subjects are right: binomial."""
+        from scipy.special import bdtrik
+
+        n, share = len(self.p), 1 / self.bins
+        counts, edges = np.histogram(self.p, self.bins, (0.0, 1.0))
+        low, high = (float(np.ceil(max(bdtrik(q, n, share), 0.0))) for q in (0.0005, 0.9995))
+        keys = [Key("observed", OBSERVED, "area"), Key("expected", EXPECTED, dash=DASHED)]
+        top = legend(sheet, [*keys, Key("99.9% of right subjects", GRID, "area")], 20, 0, sheet.width - 20) + 4
+        y = Scale(0, 1.08 * max(high, float(counts.max()), 1.0))
+        axes = Axes(sheet, (64, top, sheet.width - 80, sheet.height - top - 50), Scale(0, 1), y)
+        axes.frame("p-value", "findings")
+        axes.band([0, 1], [low, low], [high, high], GRID, 1)
+        axes.stairs(counts, edges, OBSERVED, fill=True)
+        axes.line([0, 1], [n * share, n * share], EXPECTED, DASHED)
+        outside = int(np.sum((counts < low) | (counts > high)))
+        return (
+            f"Histogram of {n} p-values that are uniform for right subjects: {n * share:.1f} are expected in each of {self.bins} "
+            f"bins, {counts.min()} to {counts.max()} are there; {outside} bins lie outside the range of 99.9%."
         )

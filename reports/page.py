@@ -11,7 +11,7 @@ from typing import Any, get_args
 from fogproof.checks.verdict import Finding
 from fogproof.reports.files import write_file
 from fogproof.reports.findings import parse_figure
-from fogproof.reports.p_values import PValues
+from fogproof.reports.p_values import PValueHistogram, PValues
 from fogproof.reports.pictures import Picture, render
 from fogproof.reports.records import Case, Run, Status
 from fogproof.reports.resolutions import Resolutions
@@ -139,6 +139,7 @@ def _overview(run: Run) -> Iterable[tuple[str, Any, tuple[float, float]]]:
         f.p_value for v in right for f in v.findings if f.exact and f.p_value is not None and 0 <= f.p_value <= 1
     )
     if exact:
+        yield "p-value-histogram", PValueHistogram(exact), (560, 340)
         yield "p-values", PValues(exact), (560, 420)
     passes = tuple(
         (case.name, case.verdict.resolution.kind, case.verdict.resolution.value)

@@ -16,7 +16,7 @@ from fogproof.checks.verdict import Finding, Interval, Resolution, Verdict, json
 from fogproof.reports import page as page_module
 from fogproof.reports import write_report
 from fogproof.reports.findings import parse_figure
-from fogproof.reports.p_values import PValues
+from fogproof.reports.p_values import PValueHistogram, PValues
 from fogproof.reports.page import headline, write_page
 from fogproof.reports.pictures import render
 from fogproof.reports.records import parse_record
@@ -97,7 +97,7 @@ def test_figures_of_failures_are_drawn_and_a_pass_has_one(typical_page):
     drawn = [name for name in figures if name.startswith("mitsuba-hg-g=0.95")]
     assert len(drawn) == 4
     assert len([name for name in figures if name.startswith("hg-g=0.95")]) == 2
-    assert len(page.all("figure")) == 2 + 4 + 2 + 1 + 1 + 2 + 2
+    assert len(page.all("figure")) == 3 + 4 + 2 + 1 + 1 + 2 + 2
     labels = [it["aria-label"] for it in page.all("div") if it.get("role") == "img"]
     assert len(labels) == len(page.all("figure"))
     assert all(len(label) > 40 for label in labels)
@@ -106,7 +106,7 @@ def test_figures_of_failures_are_drawn_and_a_pass_has_one(typical_page):
 def test_figures_beyond_the_budget_are_linked(tmp_path, monkeypatch):
     monkeypatch.setattr(page_module, "INLINE_BYTES", 0)
     page = Page(write_page(parse_record(record([case("a", "rejected")])), tmp_path))
-    assert len(page.all("figure")) == 1
+    assert len(page.all("figure")) == 2
     assert page.words.count("Figure beside this page") == 2
 
 
@@ -271,6 +271,8 @@ def drawings():
     for name, figure in figures(np.random.default_rng(3)):
         yield pytest.param(parse_figure(jsonable(figure)), id=name)
     yield pytest.param(PValues((0.5,)), id="one p-value")
+    yield pytest.param(PValueHistogram((0.5,)), id="histogram of one p-value")
+    yield pytest.param(PValueHistogram((0.0, 1.0, *np.linspace(0.01, 0.99, 500))), id="histogram")
     yield pytest.param(PValues((0.0, 1e-300, 1.0, *np.linspace(0.01, 0.99, 50))), id="tiny p-values")
     yield pytest.param(Resolutions((("a", "bias", 1e-3),)), id="one resolution")
     yield pytest.param(Resolutions(tuple((f"$x_{i}", "_kind", 10.0**-i) for i in range(60))), id="many resolutions")
