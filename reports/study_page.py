@@ -104,29 +104,36 @@ def _place(row: Row) -> tuple[float, float]:
 
 
 def _figures(scene: SceneRecord, confidence: float) -> Iterator[tuple[str, str, Convergence]]:
-    """Yield (name, title, drawing): random points over samples, the others over their counts, and all over time."""
-    looks = list(dict.fromkeys((entry.kind, str(entry.options)) for entry in scene.estimators))
+    """Yield (name, title, drawing): random points, then Sobol points and marching, each over their number and over time.
+
+    Sobol points and marching reach errors far below those of random points, and would flatten their curves. Over time the best
+    estimator with random points stands among them.
+    """
     unit = "" if scene.unit == "1" else f" [{scene.unit.replace('^2', '²')}]"
-    up = f"root mean square error{unit}"
-    curves: dict[str, list[Curve]] = {"samples": [], "other": [], "time": []}
+    up, time = f"root mean square error{unit}", "time of one estimate [s]"
+    looks = list(dict.fromkeys((entry.kind, str(entry.options)) for entry in scene.estimators))
+    random: tuple[list[Curve], list[Curve]] = ([], [])
+    others: tuple[list[Curve], list[Curve]] = ([], [])
     for entry in scene.estimators:
         if entry.axis == "nothing":  # exact: there is no error to fall
             continue
         look = looks.index((entry.kind, str(entry.options)))
-        relative = entry.points == "sobol" or entry.axis == "steps"
-        by_count = _curve(entry, look, [float(c.count) for c in entry.counts], relative)
-        curves["other" if relative else "samples"] += by_count
+        other = entry.points == "sobol" or entry.axis == "steps"
+        counted, timed = others if other else random
+        counted += _curve(entry, look, [float(c.count) for c in entry.counts], other)
         if entry.speed:
-            curves["time"] += _curve(entry, look, [timing.seconds for timing in entry.speed.counts], relative)
-    if curves["samples"]:
-        drawing = Convergence("samples", up, tuple(curves["samples"]), confidence)
-        yield "samples", "Error against samples", drawing
-    if curves["time"]:
-        drawing = Convergence("time of one estimate [s]", up, tuple(curves["time"]), confidence)
-        yield "time", "Error against time", drawing
-    if curves["other"]:
-        drawing = Convergence("Sobol points, or steps of a march", up, tuple(curves["other"]), confidence, slope=-1)
-        yield "other", "Sobol points and marching", drawing
+            curve = _curve(entry, look, [timing.seconds for timing in entry.speed.counts], other)
+            timed += curve
+            if entry.name == scene.answer.best_random:
+                others[1].extend(curve)
+    for name, across, title, curves, slope in (
+        ("samples", "samples", "Error against samples", random[0], -0.5),
+        ("time", time, "Error against time", random[1], -0.5),
+        ("other", "Sobol points, or steps of a march", "Sobol points and marching", others[0], -1.0),
+        ("other-time", time, "Sobol points and marching against time", others[1] if others[0] else [], -1.0),
+    ):
+        if curves:
+            yield name, title, Convergence(across, up, tuple(curves), confidence, slope)
 
 
 def _curve(entry: Entry, look: int, effort: list[float], dashed: bool) -> list[Curve]:

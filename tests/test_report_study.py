@@ -59,18 +59,19 @@ def test_answers_come_first_and_everything_is_told(page):
         assert text in words or text.capitalize() in words, text
 
 
-def test_figures_are_three_and_the_exact_estimator_is_in_none(page):
+def test_figures_are_four_and_the_exact_estimator_is_in_none(page):
     read = Page(page)
     figures = sorted(path.name for path in (page.parent / "figures").iterdir())
-    assert len(figures) == 6
+    assert len(figures) == 8
     assert {Path(name).suffix for name in figures} == {".png", ".svg"}
     for name in figures:
         if name.endswith(".svg"):
             svg = (page.parent / "figures" / name).read_text()
             assert ">exact<" not in svg
-            assert ("predicted by the oracle" in svg) == ("other" not in name)
+            assert ("predicted by the oracle" in svg) == (".other-" not in name or ".other-time" in name)
+            assert ("march" in svg) == (".other" in name)
             ElementTree.fromstring(svg)
-    assert read.html.count("Again: <code>fogproof study lecture.toml") == 3
+    assert read.html.count("Again: <code>fogproof study lecture.toml") == 4
 
 
 def test_every_link_leads_somewhere(page):

@@ -75,22 +75,22 @@ def command(
     except KeyboardInterrupt:
         interrupted = True
         click.echo(f"stopped after {len(results)} of {len(chosen)} cases; these are kept", err=True)
-    run_record = record(
-        results,
-        seed=seed,
-        alpha=alpha,
-        command=shlex.join(["fogproof", *sys.argv[1:]]),
-        started=started.isoformat(timespec="seconds"),
-        seconds=time.perf_counter() - clock,
-    )
-    if as_json:
-        click.echo(json.dumps(run_record))
     _explain(results, seed, alpha)
-    if folder is not None:
-        from fogproof.reports import write_report
+    if as_json or folder is not None:
+        run_record = record(
+            results,
+            seed=seed,
+            alpha=alpha,
+            command=shlex.join(["fogproof", *sys.argv[1:]]),
+            started=started.isoformat(timespec="seconds"),
+            seconds=time.perf_counter() - clock,
+        )
+        if as_json:
+            click.echo(json.dumps(run_record))
+        if folder is not None:
+            from fogproof.reports import write_report
 
-        page = write_report(run_record, folder)
-        click.echo(f"report: {page}", err=True)
+            click.echo(f"report: {write_report(run_record, folder)}", err=True)
     return 130 if interrupted else exit_code(results)
 
 
