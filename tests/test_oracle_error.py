@@ -1,13 +1,16 @@
 """The oracle's own error is measured against proven values, and a promise that is broken is seen."""
 
+import dataclasses
 import math
 
 import numpy as np
 import pytest
 
+from fogproof import oracle_error
 from fogproof.analytic.golden import Golden
 from fogproof.contracts import Reference
 from fogproof.oracle_error import compare, oracle_errors
+from fogproof.quantities import quantities
 
 
 def test_every_quantity_keeps_its_promise_on_the_golden_tables():
@@ -17,6 +20,18 @@ def test_every_quantity_keeps_its_promise_on_the_golden_tables():
         assert row.broken == 0
         assert 0 <= row.share <= 1
         assert row.relative < 1e-14
+
+
+def test_a_quantity_that_fails_breaks_its_promise_and_costs_no_other(monkeypatch):
+    def fails(**_):
+        raise ZeroDivisionError
+
+    known = dict(quantities())
+    known["transmittance"] = dataclasses.replace(known["transmittance"], function=fails)
+    monkeypatch.setattr(oracle_error, "quantities", lambda: known)
+    rows = {row.quantity: row for row in oracle_errors()}
+    assert rows["transmittance"].broken == rows["transmittance"].values > 0
+    assert rows["ambient_fog"].broken == 0
 
 
 @pytest.mark.parametrize(

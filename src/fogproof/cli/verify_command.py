@@ -112,7 +112,7 @@ def _describe(width: int, result: Result) -> str:
 def _explain(results: list[Result], seed: int, alpha: float) -> None:
     for result in results:
         if not result.good:
-            again = reproduce(result.case, seed, alpha)
+            again = reproduce(result.case, seed, alpha) + (" --twins" if result.twin else "")
             for what in _faults(result):
                 click.echo(f"\n{result.case.name}: {what}\n  reproduce: {again}", err=True)
     counts: dict[str, int] = {}
