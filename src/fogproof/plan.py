@@ -16,6 +16,7 @@ from fogproof.scene import (
     OpenGLFog,
     PiecewiseConstantMedium,
     Procedural,
+    Ray,
     Scene,
     VoxelGrid,
 )
@@ -96,6 +97,24 @@ def plan(scene: Scene) -> Plan:
         why = "nothing is gained along the ray: the background times T"
         return Plan(terms, "transmittance", f"background x T; {_THROUGH[type(medium)]}", why)
     return Plan(terms, "the background itself", "", "an empty medium changes nothing: no random numbers at all")
+
+
+def scene_of(subject: Any) -> Scene | None:
+    """Return the scene that an estimator or sampler is about; None if it is about none (a phase function, say)."""
+    medium, ray = (getattr(subject, name, None) for name in ("medium", "ray"))
+    if not isinstance(medium, AnyMedium) or not isinstance(ray, Ray):
+        return None
+    light = getattr(subject, "light", None)
+    ambient = getattr(subject, "ambient", 0.0)
+    return Scene(
+        medium,
+        ray,
+        "single" if light is not None else "ambient" if np.any(ambient) else "none",
+        light,
+        getattr(subject, "occluders", ()),
+        ambient,
+        getattr(subject, "background", 0.0),
+    )
 
 
 _TRACKING: dict[type, str] = {
