@@ -12,7 +12,7 @@ from fogproof.checks import batch_generator
 from fogproof.contracts import Draws
 from fogproof.errors import SubjectError
 from fogproof.study.cells import MARCHES, SOBOL_CALL, Batch, Cell, cells_of_text
-from fogproof.study.sobol import SobolPoints
+from fogproof.study.sobol import SobolSequence
 
 COLUMNS = ("n", "mean", "m2", "m3", "m4", "low", "high", "at_low", "at_high", "bad")
 """Of a row of moments; `at_low` and `at_high` count the smallest and the largest value, `bad` what is not finite."""
@@ -117,11 +117,12 @@ def _with_sobol_points(cell: Cell, estimator: object, batch: Batch) -> tuple[np.
     assert dimensions is not None
     values, costs = [], []
     for replicate in range(batch.first, batch.first + batch.replicates):
-        rng = batch_generator(cell.study.seed, f"{cell.stream}/{batch.count}", replicate, 0)
-        sequence = SobolPoints.sequence(dimensions, rng, batch.start)
+        scrambling = batch_generator(cell.study.seed, f"{cell.stream}/{batch.count}", replicate, 0)
+        behind = batch_generator(cell.study.seed, f"{cell.stream}/{batch.count}", replicate, 1 + batch.start)
+        sequence = SobolSequence(dimensions, scrambling, behind, batch.start)
         for start in range(0, batch.samples, SOBOL_CALL):
             n = min(SOBOL_CALL, batch.samples - start)
-            x, cost = _numbers(estimator.draw(SobolPoints(sequence.random(n)), n), n)  # type: ignore[attr-defined]
+            x, cost = _numbers(estimator.draw(sequence.points(n), n), n)  # type: ignore[attr-defined]
             values.append(x)
             costs.append(cost)
     return np.concatenate(values), float(np.mean(costs))

@@ -16,7 +16,7 @@ from fogproof.contracts import Estimator, Reference
 from fogproof.errors import FogproofError, InvalidInputError, UnsupportedError
 from fogproof.study.files import Study, StudyScene, study_of
 from fogproof.study.methods import Method, name_of
-from fogproof.study.sobol import SobolPoints
+from fogproof.study.sobol import SobolSequence
 
 Points = Literal["random", "sobol"]
 EXACT_CALLS = 1024
@@ -102,7 +102,7 @@ class Cell:
             estimator = self.method.make(self.scene, count)
             estimator.draw(np.random.default_rng(0), 1)
             if self.points == "sobol":
-                SobolPoints.sequence(1, np.random.default_rng(0), 0)
+                SobolSequence(1, np.random.default_rng(0), np.random.default_rng(0))  # loads scipy.stats
             self._made[count] = estimator
         return self._made[count]
 

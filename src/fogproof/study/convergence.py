@@ -79,8 +79,8 @@ class Falling:
     reached: bool
 
 
-def falling(counts: np.ndarray, errors: np.ndarray, resolution: float) -> Falling:
-    """Return the order and the floor of |errors| over the counts; below `resolution` they cannot be told from rounding."""
+def falling(counts: np.ndarray, errors: np.ndarray, resolution: np.ndarray) -> Falling:
+    """Return the order and the floor of |errors| over the counts; below `resolution` they are not to be told from rounding."""
     size = np.abs(errors)
     best = int(np.argmin(size))
     end = len(size)
@@ -89,14 +89,14 @@ def falling(counts: np.ndarray, errors: np.ndarray, resolution: float) -> Fallin
         if len(size) > 1:
             local = -np.diff(np.log(size)) / np.diff(np.log(counts.astype(float)))
     for k, power in enumerate(local):
-        if size[k] <= resolution or not power > _FLAT:
+        if size[k] <= resolution[k] or not power > _FLAT:
             end = k + 1
             break
-    while end > 1 and size[end - 1] <= resolution:
+    while end > 1 and size[end - 1] <= resolution[end - 1]:
         end -= 1
     usable = local[: end - 1]
     usable = usable[np.isfinite(usable)]
-    reached = bool(size[best] <= resolution or (len(local) > 0 and end < len(size)))
+    reached = bool(size[best] <= resolution[best] or (len(local) > 0 and end < len(size)))
     order = None
     if len(usable):
         x = np.log(counts[:end].astype(float))

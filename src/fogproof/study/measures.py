@@ -50,13 +50,15 @@ def measure(cell: Cell, levels: Sequence[Level], alpha: float, twin: Measured | 
     fall = None
     if cell.method.axis == "steps" and levels:
         offs = np.array([level.rows[0, 1] - value for level in levels])
-        fall = falling(np.array([level.count for level in levels]), offs, resolution_of(value, error))
+        limits = np.array([resolution_of(value, error, level.count) for level in levels])
+        fall = falling(np.array([level.count for level in levels]), offs, limits)
     bias = _bias(cell, levels, data, error)
     efficiency = None if rejected or not levels else _efficiency(levels, data, variance, curve, cell)
     record = {
         "name": cell.name,
         "kind": kind_of(cell.method),
-        "title": cell.method.title + (" with scrambled Sobol points" if cell.points == "sobol" else ""),
+        "title": cell.method.title,
+        "label": _label(cell),
         "options": options_of(cell.method),
         "points": cell.points,
         "axis": cell.method.axis,
@@ -77,6 +79,21 @@ def measure(cell: Cell, levels: Sequence[Level], alpha: float, twin: Measured | 
     measured = Measured(cell, judged, efficiency, record)
     record["status"] = measured.status
     return measured
+
+
+def _label(cell: Cell) -> str:
+    """Return the title, with the options where the scene has the same method twice."""
+    alike = [method for method in cell.scene.estimators if method.title == cell.method.title]
+    options = ", ".join(f"{key} {value}" for key, value in options_of(cell.method).items())
+    label = f"{cell.method.title} ({options})" if len(alike) > 1 and options else cell.method.title
+    return f"{label}, Sobol points" if cell.points == "sobol" else label
+
+
+def _time(cell: Cell, level: Level) -> dict[str, float]:
+    """Return the time of a realisation at one count, and of a whole estimate with so many samples, or steps."""
+    each = time_of(level)
+    whole = each.value * (level.count if cell.method.axis == "samples" else 1)
+    return {"count": level.count, **asdict(each), "seconds": whole}
 
 
 def _moments(data: Moments) -> dict[str, Any]:
@@ -191,6 +208,6 @@ def _speed(
         "wall": wall,
         "batches": len(levels[-1].cpu),
         "cpu_total": sum(level.cpu_total for level in levels),
-        "counts": [{"count": level.count, **asdict(time_of(level))} for level in levels],
+        "counts": [_time(cell, level) for level in levels],
         "targets": [asdict(target) for target in targets_of(cell, levels, square, off, [c.value for c in curve])],
     }

@@ -40,7 +40,7 @@ class Light:
     @property
     def title(self) -> str:
         """How the event is placed."""
-        return f"Single scattering, {self.placing} sampling"
+        return f"{self.placing.capitalize()} sampling"
 
     @property
     def dimensions(self) -> int | None:
@@ -69,7 +69,7 @@ class MixedLight:
 
     shadow_rays: ShadowRays = "exact"
     quantity: ClassVar[str] = "airlight"
-    title: ClassVar[str] = "Single scattering, equiangular and distance sampling by MIS"
+    title: ClassVar[str] = "Equiangular and distance sampling by MIS"
     axis: ClassVar[str] = "samples"
     expected: ClassVar[str] = "not rejected"
     reason: ClassVar[str] = ""
@@ -109,7 +109,9 @@ class MarchedLight:
     @property
     def title(self) -> str:
         """The rule."""
-        return f"Single scattering, marched ({self.rule})"
+        return {"midpoint": "Marching, midpoints", "right": "Marching, right ends", "jittered": "Jittered marching"}[
+            self.rule
+        ]
 
     @property
     def axis(self) -> str:

@@ -66,13 +66,14 @@ def _sentences(scene: Sequence[Measured], order: list[Measured], exact: list[Mea
     if exact:
         first = exact[0]
         time = first.record["speed"]["cpu"]["value"]
-        said.append(f"{_named(first)} is best: it is exact, at {_seconds(time)} an estimate.")
+        said.append(f"{first.record['label']} is best: it is exact, at {_seconds(time)} an estimate.")
     if random:
         first = random[0]
         target = first.record["speed"]["targets"][0]
-        lead = "Of the estimators that are random, " if exact else ""
+        lead = "Of those that are random, " if exact else ""
         cost = "" if target["seconds"] is None else f": an error of 1 % takes {_seconds(target['seconds'])}"
-        said.append(f"{lead}{_named(first)} is best{cost}.")
+        name = _inside(first.record["label"]) if exact else first.record["label"]
+        said.append(f"{lead}{name} is best{cost}.")
         others = [_times(other, first) for other in random[1:4]]
         if others:
             said.append(f"It is {_listed(others)}.")
@@ -80,14 +81,16 @@ def _sentences(scene: Sequence[Measured], order: list[Measured], exact: list[Mea
         gain = sobol.record["speed"]["gain"] if sobol is not None and sobol.record["speed"] else None
         if sobol is not None and gain and sobol.judged.outcome == "not rejected":
             count = sobol.record["counts"][-1]["count"]
-            said.append(f"With {count} Sobol points it is {gain['value']:.2g} times as efficient as with random ones.")
+            smaller = first.record["counts"][-1]["rmse"] / max(sobol.record["counts"][-1]["rmse"], 1e-300)
+            smaller *= math.sqrt(first.record["counts"][-1]["count"] / count)
+            said.append(f"{count} Sobol points in the place of random ones make its error {smaller:.2g} times smaller.")
     if not exact and not random:
         said.append("No estimator can be called best: none was found to be right.")
     said += [_marched(m) for m in scene if m.record["march"]]
-    doubtful = [m.cell.name for m in order if m.judged.outcome == "inconclusive"]
+    doubtful = [_inside(m.record["label"]) for m in order if m.judged.outcome == "inconclusive"]
     if doubtful:
         said.append(f"Not judged, and so not ranked among the sure: {_listed(doubtful)}.")
-    wrong = [m.cell.name for m in scene if m.status == "rejected"]
+    wrong = [_inside(m.record["label"]) for m in scene if m.status == "rejected"]
     if wrong:
         said.append(f"Rejected: {_listed(wrong)}.")
     return " ".join(said)
@@ -98,22 +101,22 @@ def _times(other: Measured, first: Measured) -> str:
     assert first.efficiency is not None
     ratio = first.efficiency.relative_to(other.efficiency)
     sure = "" if ratio.low > 1 else ", which is within noise"
-    return f"{ratio.value:.3g} times as efficient as {other.cell.name}{sure}"
+    return f"{ratio.value:.3g} times as efficient as {_inside(other.record['label'])}{sure}"
 
 
 def _marched(m: Measured) -> str:
     march, value = m.record["march"], abs(float(m.cell.reference.value))
     if m.judged.outcome == "not rejected":
-        return f"{m.cell.name} is exact here."
+        return f"{m.record['label']} is exact here."
     first, last = m.record["counts"][0], m.record["counts"][-1]
     order = "" if march["order"] is None else f", of order steps^-{march['order']['value']:.2g}"
     off = f"{first['rmse'] / value:.2g} with {first['count']} steps and {last['rmse'] / value:.2g} with {last['count']}"
-    return f"{m.cell.name} is biased, relatively by {off}{order}, and is not ranked."
+    return f"{m.record['label']} is biased, relatively by {off}{order}, and is not ranked."
 
 
-def _named(m: Measured) -> str:
-    title = m.cell.method.title
-    return f"{title} ({m.cell.name})"
+def _inside(label: str) -> str:
+    """Return a label inside a sentence; it begins with a plain word."""
+    return label[:1].lower() + label[1:]
 
 
 def _listed(items: Sequence[str]) -> str:
