@@ -8,6 +8,7 @@ to another study or another version, is never touched.
 from __future__ import annotations
 
 import contextlib
+import os
 import sqlite3
 import zlib
 from collections.abc import Iterable, Iterator
@@ -112,11 +113,19 @@ def opened(folder: Path, study: Study, salvage: bool = False) -> Iterator[Store]
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise StoreError(f"cannot make the folder {folder}: {error.strerror or error}", str(folder)) from None
+    for place in (folder, path):
+        if place.exists() and not os.access(place, os.W_OK):
+            fix = "make the folder writable, or choose another with -o"
+            raise StoreError(f"cannot write {path}: no permission to write {place}; {fix}", str(path))
     store = None
     try:
         try:
             store = _open(path, study)
+            for _ in store.rows() if salvage else ():
+                pass  # every checksum is looked at
         except _DamagedError:
+            if store is not None:
+                store.close()
             if not salvage:
                 raise
             store = _salvaged(path, study)
@@ -229,7 +238,7 @@ def _explained(path: Path, error: sqlite3.Error) -> StoreError:
         case sqlite3.SQLITE_IOERR:
             what = f"cannot write {path}: {text}"
             return StoreError(
-                f"{what} (no room left, or a faulty disk); {kept}; then give the same command again", str(path)
+                f"{what} (no room left, no permission, or a faulty disk); {kept}; then give the same command again", str(path)
             )
         case sqlite3.SQLITE_NOTADB:
             return StoreError(
