@@ -46,7 +46,7 @@ def test_processes_give_the_same_bits_and_survive_a_death(tmp_path, undisturbed)
     once, always = 20, 33
     study, cells, batches = STUDY, cells_of(STUDY), batches_of(cells_of(STUDY))
     os.environ["STUDY_TEST_FOLDER"] = str(tmp_path)
-    with opened(tmp_path / "run", study) as store, crew("processes", 2) as hands:
+    with opened(tmp_path / "run", study) as store, crew("processes", 1) as hands:
         told = []
         draw_missing(
             study, cells, batches, store, hands, lambda batch, result: told.append((batch.index, result is None)),
@@ -59,7 +59,12 @@ def test_processes_give_the_same_bits_and_survive_a_death(tmp_path, undisturbed)
         assert record["exit_code"] == 1
         assert record["batches"] == {"planned": len(batches), "done": len(batches) - 1, "failed": 1}
         victim = cells[batches[always].cell]
-        e = next(e for s in record["scenes"] for e in s["estimators"] if s["name"] == victim.scene.name and e["name"] == victim.name)
+        e = next(
+            e
+            for s in record["scenes"]
+            for e in s["estimators"]
+            if s["name"] == victim.scene.name and e["name"] == victim.name
+        )
         assert e["outcome"] == "inconclusive"
         draw_missing(study, cells, batches, store, hands)  # the next run tries it again
         assert store.failures() == []
@@ -107,26 +112,28 @@ def test_a_worker_that_fails_once_is_asked_again(tmp_path, undisturbed):
     assert record["digest"] == undisturbed
 
 
+def interrupted_after(n):
+    """Return what raises KeyboardInterrupt when n batches have been told of."""
+    told = []
+
+    def advance(batch, result):
+        told.append(batch.index)
+        if len(told) == n:
+            raise KeyboardInterrupt
+
+    return advance
+
+
 def test_an_interrupt_keeps_what_is_under_way(tmp_path, undisturbed):
     cells, batches = cells_of(STUDY), batches_of(cells_of(STUDY))
-    rounds = 0
-    while True:
+    done = 0
+    for n in (1, 17, 60):
         with opened(tmp_path, STUDY) as store, crew("threads", 2) as hands:
-            left = len(batches) - len(store.done())
-            stop_at = max(1, left // 2)
-
-            def advance(batch, result, told=[]):  # noqa: B006 - counts over the calls of one round
-                told.append(batch.index)
-                if len(told) % (stop_at + 1) == stop_at and rounds < 3:
-                    raise KeyboardInterrupt
-
-            try:
-                draw_missing(STUDY, cells, batches, store, hands, advance)
-                break
-            except KeyboardInterrupt:
-                rounds += 1
-                assert len(batches) - len(store.done()) < left
-    assert rounds == 3
+            with pytest.raises(KeyboardInterrupt):
+                draw_missing(STUDY, cells, batches, store, hands, interrupted_after(n))
+            assert len(store.done()) >= done + n
+            done = len(store.done())
+    assert done < len(batches)
     assert drawn(STUDY, tmp_path)["digest"] == undisturbed
 
 

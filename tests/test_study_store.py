@@ -147,7 +147,7 @@ def test_a_full_disk_keeps_what_is_there(tmp_path, undisturbed):
     cells, batches = cells_of(STUDY), batches_of(cells_of(STUDY))
     with opened(tmp_path, STUDY) as store, crew("threads", 1) as hands:
         store._connection.execute("pragma max_page_count = 12")
-        with pytest.raises(StoreError, match="no room left .* is kept; make room and give the same command again"):
+        with pytest.raises(StoreError, match=r"no room left .* is kept; make room and give the same command again"):
             draw_missing(STUDY, cells, batches, store, hands)
     with opened(tmp_path, STUDY) as store:
         assert 0 < len(store.done()) < len(batches)

@@ -6,6 +6,7 @@ where these are small, and a part of one replicate where it is large. The list o
 
 from __future__ import annotations
 
+import threading
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from typing import Literal
@@ -19,6 +20,8 @@ from fogproof.study.methods import Method, name_of
 from fogproof.study.sobol import SobolSequence
 
 Points = Literal["random", "sobol"]
+_BUILDING = threading.RLock()
+"""Large modules are loaded by the first estimator that needs them, which two threads at a time may not do."""
 EXACT_CALLS = 1024
 """Realisations of an exact estimator: it needs one, but its time is measured."""
 MARCHES = 4
@@ -98,13 +101,14 @@ class Cell:
     def estimator(self, count: int) -> Estimator:
         """Return the estimator, called once before anybody measures: loading and compiling are not its time."""
         count = count if self.method.axis == "steps" else 0
-        if count not in self._made:
-            estimator = self.method.make(self.scene, count)
-            estimator.draw(np.random.default_rng(0), 1)
-            if self.points == "sobol":
-                SobolSequence(1, np.random.default_rng(0), np.random.default_rng(0))  # loads scipy.stats
-            self._made[count] = estimator
-        return self._made[count]
+        with _BUILDING:
+            if count not in self._made:
+                estimator = self.method.make(self.scene, count)
+                estimator.draw(np.random.default_rng(0), 1)
+                if self.points == "sobol":
+                    SobolSequence(1, np.random.default_rng(0), np.random.default_rng(0))  # loads scipy.stats
+                self._made[count] = estimator
+            return self._made[count]
 
 
 def cells_of(study: Study) -> list[Cell]:

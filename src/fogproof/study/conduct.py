@@ -8,7 +8,6 @@ import time
 from pathlib import Path
 from typing import Any
 
-from fogproof.reports.files import write_file
 from fogproof.study.cells import batches_of, cells_of, prepare
 from fogproof.study.executors import crew
 from fogproof.study.files import Study
@@ -53,6 +52,8 @@ def run_study(
                 slots = hands.slots
         run = Circumstances(command, started, time.perf_counter() - clock, executor, slots)
         record = make_record(study, cells, batches, store, run)
+    from fogproof.reports.files import write_file
+
     if before is not None:
         record["history"] = compare(before, record)
     write_file(folder / "results.json", json.dumps(record, indent=1, allow_nan=False) + "\n")

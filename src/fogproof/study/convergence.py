@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from statistics import NormalDist
 
 import numpy as np
 
-from fogproof.checks.tails import normal_quantile
-
 CONFIDENCE = 0.99
 """Of every interval in a record."""
-Z = normal_quantile((1 - CONFIDENCE) / 2)
+Z = NormalDist().inv_cdf((1 + CONFIDENCE) / 2)
 _FLAT = 0.1
 """An error that falls with a power smaller than this from one count to the next has met its floor."""
 

@@ -17,6 +17,9 @@ from typing import Any
 
 from fogproof.errors import InvalidValueError, NotInstalledError, SubjectError
 
+PATIENCE = 10.0
+"""Seconds a scheduler has to answer."""
+
 
 class ClusterError(SubjectError):
     """A cluster cannot be reached, or has been lost; what has been drawn is kept."""
@@ -60,14 +63,22 @@ def crew(where: str, workers: int | None) -> Iterator[Crew]:
     if where == "threads":
         made = Crew(lambda: ThreadPoolExecutor(n), n)
     elif where == "processes":
-        context = multiprocessing.get_context("spawn")  # a fork would copy locks that other threads hold
-        made = Crew(lambda: ProcessPoolExecutor(n, context, initializer=_deaf_to_ctrl_c), n)
+        made = Crew(lambda: ProcessPoolExecutor(n, _context(), initializer=_deaf_to_ctrl_c), n)
     else:
         raise InvalidValueError("--executor", "must be threads, processes or dask://host:port", where)
     try:
         yield made
     finally:
         made.executor.shutdown(wait=True, cancel_futures=True)
+
+
+def _context() -> Any:
+    """Return how processes begin: never as a fork of this one, which would copy locks that other threads hold."""
+    if "forkserver" not in multiprocessing.get_all_start_methods():
+        return multiprocessing.get_context("spawn")
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(["fogproof.study.batches"])
+    return context
 
 
 def _deaf_to_ctrl_c() -> None:
@@ -82,7 +93,7 @@ def _dask(address: str) -> Iterator[Crew]:
     except ImportError:
         raise NotInstalledError("Dask", "dask") from None
     try:
-        client: Any = Client(f"tcp://{address}", timeout="10s", set_as_default=False)
+        client: Any = Client(f"tcp://{address}", timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError) as error:
         raise ClusterError(f"no Dask scheduler answers at {address}: {error}", "--executor") from None
     try:

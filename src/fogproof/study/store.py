@@ -238,7 +238,8 @@ def _explained(path: Path, error: sqlite3.Error) -> StoreError:
         case sqlite3.SQLITE_IOERR:
             what = f"cannot write {path}: {text}"
             return StoreError(
-                f"{what} (no room left, no permission, or a faulty disk); {kept}; then give the same command again", str(path)
+                f"{what} (no room left, no permission, or a faulty disk); {kept}; then give the same command again",
+                str(path),
             )
         case sqlite3.SQLITE_NOTADB:
             return StoreError(
