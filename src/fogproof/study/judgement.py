@@ -159,7 +159,9 @@ def excess(data: Moments) -> float:
 
 
 def _heavy(levels: Sequence[Level], data: Moments, value: float) -> str:
-    tail = Tail(value, _complete(levels), data.n)
+    largest = _complete(levels)
+    # Hill's estimate takes a thousandth of the sample; where fewer deviations are known, it looks further out.
+    tail = Tail(value, largest, min(data.n, 1000 * (len(largest) - 1)))
     index, spread = tail.index()
     if tail.suspect():
         return f"infinite variance suspected: the tail has index {index:.2g} +- {spread:.1g}, where 2 is the least"
