@@ -5,8 +5,9 @@ All sums run over arrays whose order is fixed, so the same batches give the same
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import groupby, islice
 
 import numpy as np
 
@@ -16,6 +17,9 @@ from fogproof.study.cells import Batch, Cell
 from fogproof.study.store import Row
 
 _N, _MEAN, _M2, _M3, _M4, _LOW, _HIGH, _AT_LOW, _AT_HIGH, _BAD = range(len(COLUMNS))
+_AT_ONCE = 10_000
+"""Batches that are read before they are packed into arrays: as objects of Python's they take several times the memory."""
+_TAIL_KEPT = 2048
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,25 +59,63 @@ class Level:
 def levels_of(rows: Iterable[Row], cells: Sequence[Cell], batches: Sequence[Batch]) -> list[list[Level]]:
     """Return the levels of each cell, one for each count of which anything was drawn."""
     levels: list[list[Level]] = [[] for _ in cells]
-    group: list[Row] = []
-    key: tuple[int, int] | None = None
-    for row in rows:
-        batch = batches[row[0]]
-        if (batch.cell, batch.level) != key:
-            _finish(group, cells, batches, levels)
-            group, key = [], (batch.cell, batch.level)
-        group.append(row)
-    _finish(group, cells, batches, levels)
+
+    def key(row: Row) -> tuple[int, int]:
+        return batches[row[0]].cell, batches[row[0]].level
+
+    for (cell, _), own in groupby(rows, key):
+        levels[cell].append(_level(own, cells[cell], batches))
     return levels
 
 
-def _finish(group: list[Row], cells: Sequence[Cell], batches: Sequence[Batch], levels: list[list[Level]]) -> None:
-    if group:
-        cell = cells[batches[group[0][0]].cell]
-        levels[cell.index].append(_level(group, cell, [batches[row[0]] for row in group]))
+@dataclass(frozen=True, eq=False)
+class _Handful:
+    """A number of stored batches as arrays; `least` is the largest of the smallest numbers of their tails."""
+
+    rows: np.ndarray
+    replicate: np.ndarray
+    squares: np.ndarray
+    realisations: np.ndarray
+    costs: np.ndarray
+    cpu: np.ndarray
+    wall: np.ndarray
+    tail: np.ndarray
+    least: float
+    tails_known: bool
 
 
-def _level(group: list[Row], cell: Cell, batches: list[Batch]) -> Level:
+def _level(own: Iterator[Row], cell: Cell, batches: Sequence[Batch]) -> Level:
+    """Return the level that some rows belong to; a handful at a time, because there may be very many."""
+    parts: list[_Handful] = []
+    count = 0
+    while group := list(islice(own, _AT_ONCE)):
+        count = batches[group[0][0]].count
+        parts.append(_handful(group, [batches[row[0]] for row in group]))
+    replicate = np.concatenate([part.replicate for part in parts])
+    rows = np.concatenate([part.rows for part in parts])
+    squares = np.concatenate([part.squares for part in parts])
+    n, costs, cpu, wall = (
+        np.concatenate([getattr(part, name) for part in parts]) for name in ("realisations", "costs", "cpu", "wall")
+    )
+    known, least = all(part.tails_known for part in parts), max(part.least for part in parts)
+    parts_tail = np.sort(np.concatenate([part.tail for part in parts]))
+    parts.clear()
+    rows = merged(rows, np.flatnonzero(np.diff(replicate, prepend=-1)))
+    wanted = count if cell.method.axis == "samples" else 1
+    return Level(
+        count,
+        rows[rows[:, _N] + rows[:, _BAD] == wanted],
+        cell.replicates,
+        merged(squares, np.array([0]))[0],
+        parts_tail[np.searchsorted(parts_tail, least) :][-_TAIL_KEPT:] if known else np.empty(0),
+        float(np.sum(costs * n) / n.sum()),
+        cpu / n,
+        wall / n,
+        float(cpu.sum()),
+    )
+
+
+def _handful(group: list[Row], batches: list[Batch]) -> _Handful:
     table = np.frombuffer(b"".join(row[1] for row in group)).reshape(-1, len(COLUMNS))
     sizes = np.array([batch.replicates for batch in batches])
     last = np.cumsum(sizes + 1) - 1  # the row of squares ends each batch
@@ -81,31 +123,26 @@ def _level(group: list[Row], cell: Cell, batches: list[Batch]) -> Level:
     own[last] = False
     first = np.repeat([batch.first for batch in batches], sizes)
     within = np.arange(len(first)) - np.repeat(np.cumsum(sizes) - sizes, sizes)
-    replicate = first + within
-    starts = np.flatnonzero(np.diff(replicate, prepend=-1))
-    rows = merged(table[own], starts)
-    count = batches[0].count
-    wanted = count if cell.method.axis == "samples" else 1
-    rows = rows[rows[:, _N] + rows[:, _BAD] == wanted]
-    per_draw = sizes * np.array([batch.samples for batch in batches])
-    costs = np.array([np.nan if row[3] is None else row[3] for row in group])
-    cpu, wall = np.array([row[5] for row in group]), np.array([row[4] for row in group])
-    squares = merged(table[last], np.array([0]))[0]
-    tail = _complete_tail([np.frombuffer(row[2]) for row in group], per_draw)
-    cost = float(np.sum(costs * per_draw) / per_draw.sum())
-    return Level(count, rows, cell.replicates, squares, tail, cost, cpu / per_draw, wall / per_draw, float(cpu.sum()))
-
-
-def _complete_tail(tails: list[np.ndarray], sizes: np.ndarray) -> np.ndarray:
-    """Return the part of the batches' tails that is known whole: what exceeds the smallest number each of them kept."""
-    if not all(len(tail) for tail, n in zip(tails, sizes, strict=True) if n >= TAIL_SHARE):
-        return np.empty(0)
-    known = [tail for tail in tails if len(tail)]
-    if len(known) < len(tails):
-        return np.empty(0)
-    least = max(tail[0] for tail in known)
-    together = np.sort(np.concatenate(known))
-    return together[np.searchsorted(together, least) :]
+    realisations = sizes * np.array([batch.samples for batch in batches])
+    tail = np.frombuffer(b"".join(row[2] for row in group))
+    lengths = np.array([len(row[2]) // 8 for row in group])
+    starts = (np.cumsum(lengths) - lengths)[lengths > 0]
+    least = float(tail[starts].max()) if len(starts) else 0.0
+    largest = tail[tail >= least]
+    if len(largest) > _TAIL_KEPT:
+        largest = np.partition(largest, len(largest) - _TAIL_KEPT)[-_TAIL_KEPT:]
+    return _Handful(
+        table[own],
+        first + within,
+        table[last],
+        realisations,
+        np.array([np.nan if row[3] is None else row[3] for row in group]),
+        np.array([row[5] for row in group]),
+        np.array([row[4] for row in group]),
+        largest,
+        least,
+        bool(np.all(lengths[realisations >= TAIL_SHARE] > 0)) and len(starts) > 0,
+    )
 
 
 def merged(rows: np.ndarray, starts: np.ndarray) -> np.ndarray:

@@ -43,7 +43,7 @@ def run_study(
     batches = batches_of(cells)
     with opened(folder, study, salvage) as store:
         prepare(cells)
-        missing = len(batches) - len(store.done())
+        missing = len(batches) - store.count()
         slots = 0
         if missing:
             with crew(executor, workers) as hands, Progress(cells, batches, store.done(), hands.slots) as progress:

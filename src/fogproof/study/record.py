@@ -60,7 +60,7 @@ def make_record(
         measured.append(measure(cell, levels[cell.index], alpha, twin))
     scenes = [_scene(number, study, measured) for number in range(len(study.scenes))]
     failures = [_failure(row, cells, batches) for row in store.failures()]
-    done = len(store.done())
+    done = store.count()
     sessions = [{"started": started, "environment": json.loads(text)} for started, text in store.sessions()]
     answers = [
         {"question": scene["question"], "scene": scene["name"], **{k: scene["answer"][k] for k in _ANSWER}}
