@@ -63,7 +63,7 @@ _LAZY = {
     "read_scene": "fogproof.scene.files",
     "read_voxel_grid": "fogproof.scene.volume_files",
 }
-_SUBPACKAGES = {"adapters", "analytic", "catalogue", "checks", "estimators", "reports", "scene"}
+_SUBPACKAGES = {"adapters", "analytic", "catalogue", "checks", "estimators", "reports", "scene", "study"}
 
 
 def __getattr__(name: str) -> Any:
