@@ -58,10 +58,7 @@ $(VENV)/.installed: $(VENV)/bin/python pyproject.toml
 	$(BIN)/python -m pip install --quiet --editable '.[mie,mitsuba]'
 	@touch $@
 
-$(VENV)/.installed-gallery: $(VENV)/.installed  ## the theory in pictures; the page lands in build/gallery
-	$(BIN)/fogproof gallery -o build/gallery
-
-test: $(VENV)/.installed
+$(VENV)/.installed-test: $(VENV)/.installed
 	$(BIN)/python -m pip install --quiet --group test
 	@touch $@
 
