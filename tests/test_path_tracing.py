@@ -273,9 +273,10 @@ def test_colours(name):
     accept(*SPECTRAL[name](), 400_000)
 
 
+@pytest.mark.parametrize("surface", [None, Surface(Sphere((0, 0, 0), 0.5), 0.4, "lambert", 0.6)])
 @pytest.mark.parametrize("medium", [Medium(0.0, (0.1, 1.0, 30.0)), voxels((3,))])
-def test_the_channels_of_a_path_in_a_white_furnace_have_one_as_their_mean(medium):
-    tracer = SpectralPathTracer(medium, BALL, ASIDE, SKY, gathering="met", roulette=None)
+def test_the_channels_of_a_path_in_a_white_furnace_have_one_as_their_mean(medium, surface):
+    tracer = SpectralPathTracer(medium, BALL, ASIDE, SKY, surface, "met", roulette=None)
     value = tracer.draw(np.random.default_rng(2), 20_000).value
     assert np.abs(value.mean(axis=1) - 1).max() <= 1e-12
     assert value.min() >= 0
