@@ -166,6 +166,8 @@ def test_any_furnace(shape, surface, index, eye, direction, albedo, g):
     assert np.abs(paths.value[:, 0] + paths.cut - 1).max() <= 1e-12
 
 
+SUN, LAMP = DirectionalLight((0, 0, -1), 1.0), PointLight((0, 2, 0), 1.0)
+BLUE = Medium(0.1, 0.9, Rayleigh())
 SLABS = {
     "met": lambda: (PathTracer(FOG, SLAB, ABOVE, SKY, BLACK, "met"), slab_reflectance(0.9, 1.0, 0.5)),
     "no roulette": lambda: (
@@ -206,6 +208,14 @@ SLABS = {
     "once": lambda: (
         PathTracer(FOG, Unbounded(), Ray((0, 0, -2), UP), PointLight((0.6, -0.8, 0.5), 3.0), deepest=1),
         single_scattering(FOG, Ray((0, 0, -2), UP), PointLight((0.6, -0.8, 0.5), 3.0)),
+    ),
+    "once, Rayleigh": lambda: (
+        PathTracer(BLUE, SLAB, ABOVE, SUN, deepest=1),
+        single_scattering(BLUE, ABOVE, SUN, shape=SLAB),
+    ),
+    "once, forward": lambda: (
+        PathTracer(unit(HenyeyGreenstein(0.7)), BALL, ASIDE, LAMP, deepest=1),
+        single_scattering(unit(HenyeyGreenstein(0.7)), ASIDE, LAMP, shape=BALL),
     ),
 }  # fmt: skip
 
@@ -471,7 +481,6 @@ def test_scatterings_in_voxels():
     accept(ScatteringsUnderUniformSky(grid, BOX), mean_scatterings(BOX, float(grid.sigma_t.mean())))
 
 
-SUN, LAMP = DirectionalLight((0, 0, -1), 1.0), PointLight((0, 2, 0), 1.0)
 MIRROR = Surface(Plane((0, 0, -2), UP), 0.5, "mirror")
 
 
