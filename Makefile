@@ -4,14 +4,20 @@ PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 
+# Runs keep all cores busy with work of their own; threads inside small matrix products would only wait for each other.
+export OPENBLAS_NUM_THREADS := 1
+
 .DEFAULT_GOAL := help
-.PHONY: help verify test lint format calibrate repeat oracle-hard golden bench clean
+.PHONY: help verify gallery test lint format calibrate repeat oracle-hard golden bench clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
-verify: $(VENV)/.installed  ## every sampler and estimator against its reference; the page lands in build/report
-	$(BIN)/fogproof verify --report build/report
+verify: $(VENV)/.installed  ## every sampler and estimator, and its broken twin, against its reference; the page lands in build/report
+	$(BIN)/fogproof verify --twins --report build/report
+
+gallery: $(VENV)/.installed  ## the theory in pictures; the page lands in build/gallery
+	$(BIN)/fogproof gallery -o build/gallery
 
 test: $(VENV)/.installed-test  ## the project's own tests
 	$(BIN)/python -m pytest --numprocesses auto
@@ -52,7 +58,10 @@ $(VENV)/.installed: $(VENV)/bin/python pyproject.toml
 	$(BIN)/python -m pip install --quiet --editable '.[mie,mitsuba]'
 	@touch $@
 
-$(VENV)/.installed-test: $(VENV)/.installed
+$(VENV)/.installed-gallery: $(VENV)/.installed  ## the theory in pictures; the page lands in build/gallery
+	$(BIN)/fogproof gallery -o build/gallery
+
+test: $(VENV)/.installed
 	$(BIN)/python -m pip install --quiet --group test
 	@touch $@
 

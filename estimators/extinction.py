@@ -15,7 +15,7 @@ from fogproof.errors import InvalidValueError, UnsupportedError
 from fogproof.estimators.grey import grey
 from fogproof.estimators.medium_data import box, grey_medium, look_ups
 from fogproof.estimators.optical_depth import optical_depth
-from fogproof.scene import AnyMedium, ExponentialMedium, LinearMedium, Medium, OpenGLFog, Ray
+from fogproof.scene import AnisotropicMedium, AnyMedium, ExponentialMedium, LinearMedium, Medium, OpenGLFog, Ray
 from fogproof.validate import number
 
 
@@ -221,6 +221,8 @@ def along(medium: AnyMedium, ray: Ray) -> Extinction:
     match medium:
         case Medium():
             return Constant(grey("sigma_a", medium.sigma_a) + grey("sigma_s", medium.sigma_s))
+        case AnisotropicMedium():
+            return Constant(grey("sigma", medium.sigma) * float(np.sqrt(direction @ medium.S @ direction)))
         case LinearMedium() if medium.gradient.ndim == 1:
             gradient = medium.gradient
             return Linear(grey("sigma_0", medium.sigma_0) + float(gradient @ origin), float(gradient @ direction))

@@ -71,7 +71,8 @@ class LitMedium:
     def extinction(self) -> Extinction:
         """Along the ray from `start`."""
         origin = self.ray.origin + self.start * self.ray.direction if self.start else self.ray.origin
-        return along(self.medium, Ray(origin, self.ray.direction))
+        length = max(self.length, float(np.finfo(float).tiny))
+        return along(self.medium, Ray(origin, self.ray.direction, length))
 
     @cached_property
     def albedo(self) -> float:

@@ -9,26 +9,60 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from fogproof.reports.comparison import write_comparison_page
+from fogproof.reports.comparison import worse, write_comparison_page
 from fogproof.reports.files import prepare_folder
 from fogproof.reports.gallery import write_gallery
 from fogproof.reports.junit import write_junit
 from fogproof.reports.page import write_page
-from fogproof.reports.records import SCHEMA, parse_record, read_record, write_csv, write_record
+from fogproof.reports.records import (
+    RESULTS,
+    SCHEMA,
+    Run,
+    check_schema,
+    load_record,
+    parse_record,
+    write_csv,
+    write_record,
+)
+from fogproof.reports.study_page import write_study_page
+from fogproof.reports.study_records import as_run, parse_study
 
-__all__ = ["SCHEMA", "prepare_folder", "read_record", "write_comparison", "write_gallery", "write_report"]
+__all__ = [
+    "SCHEMA",
+    "came_out_worse",
+    "prepare_folder",
+    "read_record",
+    "write_comparison",
+    "write_gallery",
+    "write_report",
+]
 
 
-def write_report(record: dict[str, Any], folder: str | Path) -> Path:
-    """Write the report of `record` into `folder`, made if need be, and return the path of its page.
+def write_report(record: dict[str, Any], folder: str | Path, *, keep: bool = False) -> Path:
+    """Write the report of `record`, of whatever kind, into `folder`, made if need be, and return the path of its page.
 
     The record itself is written first: whatever goes wrong afterwards, the results are kept.
+
+    keep  the record is in the folder already, and stays as it is
     """
-    write_record(record, folder)
+    if not keep:
+        write_record(record, folder)
+    check_schema(record, "record")
+    if _is_study(record):
+        study = parse_study(record)
+        write_junit(as_run(study), folder)
+        return write_study_page(study, Path(folder))
     run = parse_record(record)
     write_csv(run, folder)
     write_junit(run, folder)
     return write_page(run, folder)
+
+
+def read_record(folder: str | Path) -> dict[str, Any]:
+    """Return the record in `folder`, or say in an `InvalidInputError` why there is none that can be shown."""
+    record = load_record(folder)
+    _run(record, str(Path(folder) / RESULTS))
+    return record
 
 
 def write_comparison(before: dict[str, Any], after: dict[str, Any], folder: str | Path) -> Path:
@@ -36,7 +70,21 @@ def write_comparison(before: dict[str, Any], after: dict[str, Any], folder: str 
 
     The two records stand beside it as `before.json` and `after.json`.
     """
-    older, newer = parse_record(before, "before"), parse_record(after, "after")
+    older, newer = _run(before, "before"), _run(after, "after")
     write_record(before, folder, "before.json")
     write_record(after, folder, "after.json")
     return write_comparison_page(older, newer, Path(folder))
+
+
+def came_out_worse(before: dict[str, Any], after: dict[str, Any]) -> bool:
+    """Return whether some case is right in the older record, or not in it, and wrong in the newer one."""
+    return worse(_run(before, "before"), _run(after, "after"))
+
+
+def _run(record: Any, origin: str) -> Run:
+    check_schema(record, origin)
+    return as_run(parse_study(record, origin)) if _is_study(record) else parse_record(record, origin)
+
+
+def _is_study(record: Any) -> bool:
+    return isinstance(record, dict) and record.get("kind") == "study"

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fogproof.reports.pictures import EXPECTED, GRID, OBSERVED
+from fogproof.reports.axes import DASHED, Axes, Key, legend, spanning
+from fogproof.reports.colours import EXPECTED, GRID, INK, OBSERVED
+from fogproof.reports.sheet import Sheet, Words
 from fogproof.reports.text import label
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 _NAMED = 3
 
@@ -25,30 +23,28 @@ class BeforeAfter:
     before: tuple[float, ...]
     after: tuple[float, ...]
 
-    def draw(self, figure: Figure) -> str:
+    def draw(self, sheet: Sheet) -> str:
         """Draw after over before, both logarithmic, with the factor of two around no change; name what lies far out."""
         before, after = np.array(self.before), np.array(self.after)
         ratio = after / before
-        axes = figure.add_axes((0.16, 0.15, 0.81, 0.82))
-        both = np.concatenate([before, after])
-        ends = np.array([both.min() / 1.5, both.max() * 1.5])
-        axes.fill_between(ends, ends / 2, ends * 2, color=GRID, alpha=0.6, linewidth=0, label="within a factor of 2")
-        axes.plot(ends, ends, color=EXPECTED, linestyle="--", label="no change")
-        axes.plot(before, after, "o", color=OBSERVED, markersize=5, label="a case")
-        axes.set(xscale="log", yscale="log", xlim=ends, ylim=ends)
-        axes.set_xlabel(f"{self.what}, before")
-        axes.set_ylabel(f"{self.what}, after")
+        keys = [Key("within a factor of 2", GRID, "area"), Key("no change", EXPECTED, dash=DASHED)]
+        top = legend(sheet, [*keys, Key("a case", OBSERVED, "dot")], 20, 0, sheet.width - 20) + 4
+        scale = spanning(np.concatenate([before, after]), log=True)
+        axes = Axes(sheet, (96, top, sheet.width - 112, sheet.height - top - 50), scale, scale)
+        axes.frame(f"{self.what}, before", f"{self.what}, after")
+        ends = np.array([scale.low, scale.high])
+        axes.band(ends, ends / 2, ends * 2, GRID, 0.6)
+        axes.line(ends, ends, EXPECTED, DASHED)
+        axes.points(before, after, OBSERVED)
         far = np.argsort(-np.abs(np.log(ratio)), kind="stable")[:_NAMED]
+        named: list[tuple[float, float]] = []
         for index in far[np.abs(np.log2(ratio[far])) > 1]:
-            axes.annotate(
-                label(self.names[index], 24),
-                (before[index], after[index]),
-                textcoords="offset points",
-                xytext=(6, 4) if before[index] < np.sqrt(ends.prod()) else (-6, 4),
-                ha="left" if before[index] < np.sqrt(ends.prod()) else "right",
-                fontsize=9,
-            )
-        axes.legend(loc="best")
+            (x, y), right = axes.at(before[[index]], after[[index]])[0], scale(before[[index]])[0] < 0.5
+            if any(abs(y - other) < 14 and abs(x - beside) < 200 for beside, other in named):
+                continue  # one name over another is none
+            named.append((x, y))
+            name = label(self.names[index], 24)
+            sheet.shapes.append(Words(x + (7 if right else -7), y - 6, name, INK, "start" if right else "end", size=12))
         middle = float(np.exp(np.median(np.log(ratio))))
         return (
             f"{self.what} of {ratio.size} cases after against before: the middle ratio is {middle:.2f}, the smallest "

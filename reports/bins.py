@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fogproof.errors import InvalidValueError
-from fogproof.reports.pictures import EXPECTED, OBSERVED
+from fogproof.reports.axes import DASHED, Axes, Key, Scale, legend
+from fogproof.reports.colours import EXPECTED, OBSERVED
+from fogproof.reports.sheet import Sheet
 from fogproof.reports.text import label
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True)
@@ -31,7 +29,7 @@ class Bins:
             if n < 1 or got != n:
                 raise InvalidValueError(name, f"must have one number for each of the {max(n, 0)} bins", got)
 
-    def draw(self, figure: Figure) -> str:
+    def draw(self, sheet: Sheet) -> str:
         """Draw densities above and the relative misfit of each bin below.
 
         An open outer bin is drawn as wide as its neighbour. Bins without width (atoms) leave no density to draw: then
@@ -42,29 +40,27 @@ class Bins:
         width = np.diff(edges)
         if np.all(np.isfinite(width) & (width > 0)):
             across = label(self.label) + (" (the outermost bin is open)" if opened else "")
-            what = f"density over {label(self.label.partition('[')[0])}"
+            what = "density"
         else:
             edges, width = np.arange(edges.size) - 0.5, np.ones(expected.size)
             across, what = f"number of the bin of {label(self.label)}", "share"
-        low = figure.add_axes((0.15, 0.16, 0.83, 0.23))
-        top = figure.add_axes((0.15, 0.44, 0.83, 0.53), sharex=low)
-        top.tick_params(labelbottom=False)
-        top.stairs(observed / width, edges, fill=True, color=OBSERVED, alpha=0.35)
-        top.stairs(observed / width, edges, color=OBSERVED, label="observed")
-        top.stairs(expected / width, edges, color=EXPECTED, linestyle="--", label="expected")
-        top.set_ylim(bottom=0)
-        top.set_ylabel(what)
-        top.legend(loc="upper right")
         with np.errstate(divide="ignore", invalid="ignore"):
-            misfit = np.where(expected > 0, observed / expected - 1, np.nan)
-        low.axhline(0, color=EXPECTED, linestyle="--")
-        low.stairs(100 * misfit, edges, color=OBSERVED, baseline=None)
-        reach = np.nanmax(np.abs(100 * misfit), initial=0)
-        low.set_ylim(*(np.array([-1.15, 1.15]) * (reach or 1)))
-        low.set_ylabel("misfit [%]")
-        low.set_xlabel(across)
-        top.locator_params("y", nbins=5)
-        low.locator_params("y", nbins=3)
+            misfit = np.where(expected > 0, 100 * (observed / expected - 1), np.nan)
+        keys = [Key("observed", OBSERVED, "area"), Key("expected", EXPECTED, dash=DASHED)]
+        left, right = 76.0, sheet.width - 90
+        top = legend(sheet, keys, left, 0, right) + 4
+        x, middle = Scale(float(edges[0]), float(edges[-1])), 0.62 * sheet.height
+        high = np.append(observed, expected) / np.append(width, width)
+        high = high[np.isfinite(high)]
+        upper = Axes(sheet, (left, top, right, middle - top - 14), x, Scale(0, 1.06 * high.max(initial=0) or 1.0))
+        upper.frame(up=what)
+        upper.stairs(observed / width, edges, OBSERVED, fill=True)
+        upper.stairs(expected / width, edges, EXPECTED, DASHED)
+        reach = np.abs(misfit[np.isfinite(misfit)]).max(initial=0) * 1.15 or 1.0
+        lower = Axes(sheet, (left, middle, right, sheet.height - middle - 50), x, Scale(-reach, reach))
+        lower.frame(across, "misfit [%]", ticks=(6, 4))
+        lower.line(edges[[0, -1]], [0, 0], EXPECTED, DASHED)
+        lower.stairs(misfit, edges, OBSERVED)
         worst = int(np.argmax(np.abs(observed - expected)))
         return (
             f"Observed shares of {expected.size} bins of {label(self.label)} against their probabilities; the largest "

@@ -52,6 +52,11 @@ def pair_cases(before: Run, after: Run) -> list[Pair]:
     return sorted(pairs, key=lambda pair: (CHANGES.index(pair.change), not pair.wrong))
 
 
+def worse(before: Run, after: Run) -> bool:
+    """Return whether a case came out worse in the newer run."""
+    return any(pair.change == "worse" for pair in pair_cases(before, after))
+
+
 def write_comparison_page(before: Run, after: Run, folder: Path) -> Path:
     """Write `folder/comparison.html` and its figures; return the page's path."""
     pairs = pair_cases(before, after)
@@ -114,5 +119,5 @@ def _figures(pairs: list[Pair]) -> list[Picture]:
         usable = [row for row in rows if 0 < row[1] < inf and 0 < row[2] < inf]
         if usable:
             drawing = BeforeAfter(what, *(tuple(column) for column in zip(*usable, strict=True)))
-            figures.append(render(drawing, f"comparison-{stem}", (5.6, 4.4)))
+            figures.append(render(drawing, f"comparison-{stem}", (560, 440)))
     return figures

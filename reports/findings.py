@@ -6,14 +6,15 @@ from typing import Any, cast
 
 from fogproof.errors import InvalidInputError, shorten
 from fogproof.reports.bins import Bins
-from fogproof.reports.pictures import Drawing
+from fogproof.reports.pictures import Chart
 from fogproof.reports.running_mean import RunningMean
+from fogproof.reports.validation import adapter
 from fogproof.reports.z_map import ZMap
 
 KINDS = {"z-map": ZMap, "bins": Bins, "mean": RunningMean}
 
 
-def parse_figure(figure: dict[str, Any], origin: str = "figure") -> Drawing:
+def parse_figure(figure: dict[str, Any], origin: str = "figure") -> Chart:
     """Return the drawing that `figure` describes; a fault is an `InvalidInputError` that names it."""
     import pydantic
 
@@ -23,7 +24,7 @@ def parse_figure(figure: dict[str, Any], origin: str = "figure") -> Drawing:
             f"{origin}.kind must be one of {', '.join(KINDS)}, got {shorten(kind)}", f"{origin}.kind"
         )
     try:
-        return cast(Drawing, pydantic.TypeAdapter(KINDS[kind]).validate_python(figure))
+        return cast(Chart, adapter(KINDS[kind]).validate_python(figure))
     except pydantic.ValidationError as error:
         fault = error.errors()[0]
         place = ".".join([origin, *(str(part) for part in fault["loc"])])

@@ -9,7 +9,7 @@ import numpy as np
 
 from fogproof.analytic import airlight_integral, ambient_fog, single_scattering, transmittance
 from fogproof.estimators import Airlight, Equiangular, FreePath
-from fogproof.reports.pictures import EXPECTED, OBSERVED, THIRD
+from fogproof.reports.colours import EXPECTED, OBSERVED, THIRD
 from fogproof.scene import HenyeyGreenstein, Medium, PointLight, Ray
 
 if TYPE_CHECKING:

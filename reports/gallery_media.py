@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fogproof.analytic import ambient_fog, transmittance
-from fogproof.estimators import AnalogFog, AnalogTransmittance
-from fogproof.reports.pictures import EXPECTED, INK, OBSERVED, THIRD
-from fogproof.scene import AnyMedium, ExponentialMedium, LinearMedium, Medium, PiecewiseConstantMedium, Ray
+from fogproof.estimators import AnalogFog, DeltaFreePath, FreePath, along
+from fogproof.reports.colours import EXPECTED, INK, OBSERVED, THIRD
+from fogproof.scene import (
+    AnyMedium,
+    ExponentialMedium,
+    LinearMedium,
+    Medium,
+    OpenGLFog,
+    PiecewiseConstantMedium,
+    Procedural,
+    Ray,
+    VoxelGrid,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -25,34 +36,59 @@ def _ray(length: np.ndarray) -> Ray:
 
 @dataclass(frozen=True)
 class Transmittances:
-    """Transmittance over distance in a homogeneous, a linear, an exponential and a layered medium."""
+    """Transmittance over distance in several media, and the share of sampled free paths that come as far."""
 
     rng: np.random.Generator
-    samples: int = 1000
+    media: Mapping[str, AnyMedium]
+    samples: int = 2000
 
     def draw(self, figure: Figure) -> str:
-        """Draw the oracle's curves, and analog estimates with two standard errors in the homogeneous medium."""
+        """Draw the oracle's curves, and behind them in small steps what the samplers of free paths say."""
         axes = figure.add_axes((0.12, 0.16, 0.85, 0.80))
-        media: dict[str, tuple[AnyMedium, str, str]] = {
-            "homogeneous": (Medium(0.1, 0.2), OBSERVED, "-"),
-            "linear": (LinearMedium(0.0, [0, 0, 0.1]), EXPECTED, "--"),
-            "exponential": (ExponentialMedium(1.0, [0, 0, -0.5]), THIRD, "-."),
-            "layers": (PiecewiseConstantMedium([0, 2, 4, 6, np.inf], [0.05, 0.8, 0.05, 0.3]), INK, ":"),
-        }
-        for name, (medium, colour, style) in media.items():
+        edges, ray, worst = np.linspace(0, 10, 41), _ray(np.array(10.0)), 0.0
+        looks = ((OBSERVED, "-"), (EXPECTED, "--"), (THIRD, "-."), (INK, ":"))
+        for (name, medium), (colour, style) in zip(self.media.items(), looks, strict=True):
+            paths = self._paths(medium, ray)
+            share = np.array([np.mean(paths > z) for z in edges[:-1] + 0.125])
+            exact = transmittance(medium, _ray(edges[:-1] + 0.125)).value
+            worst = max(worst, float(np.abs(share - exact).max()))
+            axes.stairs(share, edges, fill=True, color=colour, alpha=0.12)
+            axes.stairs(share, edges, color=colour, alpha=0.5, linewidth=0.8)
             value = transmittance(medium, _ray(_DISTANCE)).value
             axes.plot(_DISTANCE, value, color=colour, linestyle=style, label=name)
-        mean = [AnalogTransmittance(0.3, z).draw(self.rng, self.samples).value.mean() for z in _STOPS]
-        error = np.sqrt(np.multiply(mean, np.subtract(1, mean)) / self.samples)
-        axes.errorbar(
-            _STOPS, mean, 2 * error, fmt="o", color=OBSERVED, markersize=4, label="analog, ± 2 standard errors"
-        )
         axes.set(xlabel="distance [m]", ylabel="transmittance", ylim=(0, 1.02), xlim=(0, 10))
         axes.legend(loc="upper right")
         return (
-            "Transmittance over distance in four media by the oracle; points are analog estimates in the homogeneous "
-            f"medium, {self.samples} free paths each."
+            f"Transmittance over distance: {', '.join(self.media)}. Curves by the oracle; steps are the shares of "
+            f"{self.samples} sampled free paths each that come further, which differ from it by at most {worst:.2g}."
         )
+
+    def _paths(self, medium: AnyMedium, ray: Ray) -> np.ndarray:
+        if isinstance(medium, VoxelGrid | Procedural | PiecewiseConstantMedium):
+            return DeltaFreePath(medium, ray).sample(self.rng, self.samples).x
+        return FreePath(along(medium, ray), 10.0).distances(self.rng.random((self.samples, 1)))
+
+
+def closed_media() -> dict[str, AnyMedium]:
+    """Return media whose free paths have a closed form."""
+    return {
+        "homogeneous": Medium(0.1, 0.2),
+        "linear": LinearMedium(0.0, [0, 0, 0.1]),
+        "exponential": ExponentialMedium(1.0, [0, 0, -0.5]),
+        "OpenGL fog, exp2": OpenGLFog("exp2", 0.13),
+    }
+
+
+def tracked_media() -> dict[str, AnyMedium]:
+    """Return media whose free paths are tracked."""
+    cells = np.array([0.05, 0.9, 0.1, 0.05, 0.6, 0.2, 0.0, 0.3]).reshape(1, 1, 8)
+    box = ([-1, -1, 0], [1, 1, 10])
+    return {
+        "layers": PiecewiseConstantMedium([0, 2, 4, 6, np.inf], [0.05, 0.8, 0.05, 0.3]),
+        "voxels, nearest": VoxelGrid(cells, *box, interpolation="nearest"),
+        "voxels, trilinear": VoxelGrid(cells, *box),
+        "a function": Procedural(lambda points: 0.12 * (1 + np.sin(2 * points[..., 2])), 0.24, detail=0.3),
+    }
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ import numpy as np
 
 from fogproof.analytic import phase_cdf, phase_pdf
 from fogproof.estimators import Directions
-from fogproof.reports.pictures import EXPECTED, INK, OBSERVED, THIRD
+from fogproof.reports.colours import EXPECTED, INK, OBSERVED, THIRD
 from fogproof.scene import HenyeyGreenstein, Isotropic, Mie, PhaseFunction, Rayleigh, Schlick
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import numpy as np
 
 from fogproof.analytic import ambient_fog, rayleigh_scattering_coefficient, transmittance
 from fogproof.estimators import AnalogFog, AnalogTransmittance
-from fogproof.reports.pictures import INK
+from fogproof.reports.colours import INK
 from fogproof.scene import Medium, Ray, Rayleigh
 
 if TYPE_CHECKING:

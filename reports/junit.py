@@ -1,6 +1,6 @@
 """`junit.xml`: a run as continuous integration systems read it.
 
-rejected, surprise    <failure> with the verdict in words
+rejected, surprise    <failure> with the verdict in words; so is a broken twin that was not rejected
 error                 <error>
 skipped               <skipped> with the reason (what to install)
 inconclusive          <skipped>: nothing was shown wrong, and nothing right either, so it is no pass
@@ -14,6 +14,7 @@ from xml.etree import ElementTree
 
 from fogproof.reports.files import write_file
 from fogproof.reports.records import Case, Run
+from fogproof.reports.summaries import blind
 from fogproof.reports.text import visible
 
 
@@ -49,7 +50,7 @@ def _add(suite: ElementTree.Element, run: Run, case: Case) -> str:
         "skipped": "skipped",
         "inconclusive": "skipped",
     }
-    tag = tags.get(case.status, "")
+    tag = "failure" if blind(case) else tags.get(case.status, "")
     words = visible(explain(case))
     if tag:
         message = words.partition("\n")[0]
@@ -68,6 +69,9 @@ def explain(case: Case) -> str:
         lines.append(case.reason or case.status)
     if case.verdict is not None:
         lines.append(str(case.verdict))
-    if case.status not in ("passed", "skipped") and case.reproduce:
+    if case.twin_result and blind(case):
+        why = case.twin_result.reason
+        lines.insert(0, f"broken twin ({case.twin}): {case.twin_result.outcome}" + (f"; {why}" if why else ""))
+    if (case.status not in ("passed", "skipped") or blind(case)) and case.reproduce:
         lines.append(f"reproduce: {case.reproduce}")
     return "\n".join(lines)

@@ -8,12 +8,14 @@ from math import inf
 from pathlib import Path
 from typing import Any, get_args
 
+from fogproof.checks.verdict import Finding
 from fogproof.reports.files import write_file
 from fogproof.reports.findings import parse_figure
-from fogproof.reports.p_values import PValues
+from fogproof.reports.p_values import PValueHistogram, PValues
 from fogproof.reports.pictures import Picture, render
-from fogproof.reports.records import Run, Status
+from fogproof.reports.records import Case, Run, Status
 from fogproof.reports.resolutions import Resolutions
+from fogproof.reports.summaries import blind, catches, needs, systems
 from fogproof.reports.templates import cases as some_cases
 from fogproof.reports.templates import fill
 from fogproof.reports.text import file_stem
@@ -23,6 +25,10 @@ INLINE_BYTES = 5_000_000
 
 STATUSES: tuple[Status, ...] = get_args(Status)
 """From what needs attention to what does not: the order of the page."""
+
+
+OUTCOMES = ("rejected", "inconclusive", "not rejected")
+"""The order in which the findings of a case are told."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +42,7 @@ class Shown:
 def write_page(run: Run, folder: str | Path) -> Path:
     """Write `folder/index.html` and its figures as `folder/figures/*.png` and `*.svg`; return the page's path.
 
-    A pass has its first figure alone, and as SVG alone: figures of noise are not worth the time that they take.
+    A pass has its first figure alone: the others are figures of noise. Findings about the same data share one figure.
     """
     folder = Path(folder)
     cases = sorted(run.cases, key=lambda case: STATUSES.index(case.status))
@@ -46,11 +52,10 @@ def write_page(run: Run, folder: str | Path) -> Path:
     shown: dict[tuple[str, int], Shown] = {}
     room = INLINE_BYTES
     for case in cases:
-        drawn = [(i, f) for i, f in enumerate(case.verdict.findings if case.verdict else ()) if f.figure is not None]
-        passed = case.status == "passed"
-        for index, finding in drawn[:1] if passed else drawn:
+        drawn = _figures(case)
+        for index, finding, figure in drawn[:1] if case.status == "passed" else drawn:
             stem = file_stem(case.name, finding.check, str(index))
-            picture = render(parse_figure(finding.figure or {}), stem, png=not passed)
+            picture = render(parse_figure(figure), stem)
             picture.save(folder / "figures")
             svg = picture.on_page
             room -= len(svg)
@@ -63,6 +68,12 @@ def write_page(run: Run, folder: str | Path) -> Path:
         overview=overview,
         shown=shown,
         counts={status: sum(case.status == status for case in cases) for status in STATUSES},
+        systems=systems(run),
+        twins=[case for case in cases if case.twin_result],
+        blind=[case for case in cases if blind(case)],
+        catches=catches(run),
+        needs=needs(run.cases),
+        known=[case for case in cases if case.expected == "rejected"],
         headline=headline(run),
         tone=_tone(run),
     )
@@ -74,12 +85,19 @@ def headline(run: Run) -> tuple[str, str]:
     count = {status: sum(case.status == status for case in run.cases) for status in STATUSES}
     wrong, of = count["rejected"] + count["surprise"], f"of {some_cases(len(run.cases))}"
     judged, unsure = count["passed"] + count["known"], count["inconclusive"]
+    twins = [case for case in run.cases if case.twin_result]
+    missed = sum(blind(case) for case in twins)
+    broken = sum(row.broken for row in run.oracle)
     if not run.cases:
         first = "No case was run"
     elif wrong:
         first = f"{wrong} {of} came out wrong"
     elif count["error"]:
         first = f"{count['error']} {of} could not be judged"
+    elif broken:
+        first = f"The oracle broke its promise on {broken} of {sum(row.values for row in run.oracle)} proven values"
+    elif missed:
+        first = f"{missed} of {len(twins)} broken twins {'was' if missed == 1 else 'were'} not rejected"
     elif unsure:
         first = f"Nothing was rejected, but {unsure} {of} {'is' if unsure == 1 else 'are'} inconclusive"
     elif not judged:
@@ -92,14 +110,26 @@ def headline(run: Run) -> tuple[str, str]:
     words = {"surprise": "not as declared", "error": "failed to run", "known": "rejected as declared"}
     words["passed"] = "not rejected"
     counts = [f"{count[status]} {words.get(status, status)}" for status in STATUSES if count[status]]
+    counts += [f"{len(twins) - missed} of {len(twins)} broken twins rejected"] if twins else []
     return first, ", ".join(counts) or "The record is empty"
 
 
 def _tone(run: Run) -> str:
     found = {case.status for case in run.cases}
-    if found & {"rejected", "surprise", "error"}:
+    if found & {"rejected", "surprise", "error"} or any(row.broken for row in run.oracle) or any(map(blind, run.cases)):
         return "bad"
     return "care" if "inconclusive" in found or not found & {"passed", "known"} else "good"
+
+
+def _figures(case: Case) -> list[tuple[int, Finding, dict[str, Any]]]:
+    """Return (index, finding, figure) of the different figures of a case, in the order in which the page tells the findings."""
+    findings = list(enumerate(case.verdict.findings if case.verdict else ()))
+    findings.sort(key=lambda pair: OUTCOMES.index(pair[1].outcome))
+    found: list[tuple[int, Finding, dict[str, Any]]] = []
+    for index, finding in findings:
+        if finding.figure is not None and all(finding.figure != figure for _, _, figure in found):
+            found.append((index, finding, finding.figure))
+    return found
 
 
 def _overview(run: Run) -> Iterable[tuple[str, Any, tuple[float, float]]]:
@@ -109,7 +139,8 @@ def _overview(run: Run) -> Iterable[tuple[str, Any, tuple[float, float]]]:
         f.p_value for v in right for f in v.findings if f.exact and f.p_value is not None and 0 <= f.p_value <= 1
     )
     if exact:
-        yield "p-values", PValues(exact), (5.6, 4.2)
+        yield "p-value-histogram", PValueHistogram(exact), (560, 340)
+        yield "p-values", PValues(exact), (560, 420)
     passes = tuple(
         (case.name, case.verdict.resolution.kind, case.verdict.resolution.value)
         for case in run.cases

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fogproof.reports.pictures import EXPECTED, OBSERVED, THIRD
+from fogproof.reports.axes import Axes, Key, Marker, Scale, legend, spanning
+from fogproof.reports.colours import EXPECTED, OBSERVED, THIRD
+from fogproof.reports.sheet import Sheet
 from fogproof.reports.text import label
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-    from matplotlib.lines import Line2D
 
 _NAMED = 48
 
@@ -25,38 +22,47 @@ class Resolutions:
 
     @property
     def size(self) -> tuple[float, float]:
-        """Width and height [inch]: a line for each named case."""
-        return 5.6, 0.9 + 0.2 * min(len(self.passes), _NAMED) + 0.22 * len(self._kinds)
+        """Width and height [px]: a line for each named case, or a broader one for each kind."""
+        if len(self.passes) <= _NAMED:
+            return 560.0, 90.0 + 20 * len(self.passes) + 20 * len(self._kinds)
+        return 560.0, 90.0 + 56 * len(self._kinds)
 
     @property
     def _kinds(self) -> list[str]:
         return sorted({kind for _, kind, _ in self.passes})
 
-    def draw(self, figure: Figure) -> str:
-        """Draw one mark a pass, sorted by kind and value, a colour and shape for each kind; names while they fit."""
+    def draw(self, sheet: Sheet) -> str:
+        """Draw one mark a pass, sorted by kind and value: a line each while their names fit, otherwise a slope for each kind."""
         kinds = self._kinds
         rows = sorted(self.passes, key=lambda row: (kinds.index(row[1]), row[2]))
-        named = len(rows) <= _NAMED
-        height = self.size[1]
-        axes = figure.add_axes(
-            (0.42 if named else 0.09, 0.62 / height, 0.54 if named else 0.87, 1 - (0.75 + 0.22 * len(kinds)) / height)
-        )
-        looks = [(OBSERVED, "o"), (EXPECTED, "s"), (THIRD, "^"), (OBSERVED, "x"), (EXPECTED, "+")]
-        marks: list[Line2D] = []
-        for index, kind in enumerate(kinds):
-            colour, marker = looks[index % len(looks)]
-            at = [(value, y) for y, (_, its_kind, value) in enumerate(rows) if its_kind == kind]
-            marks += axes.plot(*np.transpose(at), marker, color=colour, markersize=5)
-        if named:
-            axes.set_yticks(range(len(rows)), [label(name, 30) for name, _, _ in rows], fontsize=9)
-        else:
-            axes.set_ylabel("passes, sorted")
-        axes.set_ylim(len(rows) - 0.4, -0.6)
-        axes.set_xscale("log")
-        axes.set_xlabel("smallest error that would have been caught", x=0.3 if named else 0.5)
-        names = [label(kind, 60) for kind in kinds]
-        figure.legend(marks, names, loc="upper left", borderaxespad=0.1, handletextpad=0.2, labelspacing=0.3)
         values = [value for _, _, value in rows]
+        named = len(rows) <= _NAMED
+        looks: list[tuple[str, Marker]] = [
+            (OBSERVED, "dot"),
+            (EXPECTED, "square"),
+            (THIRD, "triangle"),
+            (OBSERVED, "cross"),
+            (EXPECTED, "diamond"),
+            (THIRD, "cross"),
+        ]
+        chosen = {kind: looks[index % len(looks)] for index, kind in enumerate(kinds)}
+        counts = [sum(its == kind for _, its, _ in rows) for kind in kinds]
+        keys = [Key(label(kind, 60), *chosen[kind]) for kind in kinds]
+        top = (legend(sheet, keys, 8, 0, sheet.width - 8) if named else 4.0) + 4
+        left = 0.42 * sheet.width
+        y = Scale(len(rows), -1) if named else Scale(len(kinds) - 0.5, -0.5)
+        axes = Axes(sheet, (left, top, sheet.width - left - 20, sheet.height - top - 50), spanning(values, log=True), y)
+        axes.frame("smallest error that would have been caught", ticks=(6, 0))
+        for number, (kind, count) in enumerate(zip(kinds, counts, strict=True)):
+            at = np.array([(value, y) for y, (_, its, value) in enumerate(rows) if its == kind])
+            slope = number + 0.35 - 0.7 * (np.arange(count) + 0.5) / count
+            axes.points(at[:, 0], at[:, 1] if named else slope, *chosen[kind])
+        if named:
+            axes.names([label(name, 30) for name, _, _ in rows], np.arange(len(rows)))
+        else:
+            axes.names(
+                [f"{label(kind, 30)} ({n})" for kind, n in zip(kinds, counts, strict=True)], np.arange(len(kinds))
+            )
         named_kinds = ", ".join(label(kind) for kind in kinds)
         return (
             f"{len(rows)} passes: errors above {min(values):.2g} to {max(values):.2g} ({named_kinds}) would have shown."

@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 
 _STATUSES = {"surprise": "!", "rejected": "✗", "error": "⚠", "inconclusive": "?", "known": "⚑", "skipped": "–"}
 _CHANGES = {"worse": "✗", "mended": "✓", "changed": "≠", "new": "+", "gone": "–", "same": "="}
-_MARKS = _STATUSES | {"passed": "✓"} | _CHANGES
+_TRUST = {"kept": "✓", "broken": "✗", "caught": "✓", "blind": "✗"}
+_MARKS = _STATUSES | {"passed": "✓"} | _CHANGES | _TRUST
 
 
 def fill(template: str, **values: Any) -> str:
@@ -46,6 +47,7 @@ def _environment() -> jinja2.Environment:
         "grouped": grouped,
         "sentence": sentence,
         "cases": cases,
+        "duration": duration,
     }
     return environment
 
@@ -58,6 +60,14 @@ def _asset(name: str) -> str:
 def number(value: float | None) -> str:
     """Return three digits of `value`, a dash for None."""
     return "–" if value is None else f"{value:.3g}"
+
+
+def duration(seconds: float) -> str:
+    """Return a time with a unit that suits it."""
+    for unit, size in (("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)):
+        if seconds >= size:
+            return f"{seconds / size:.3g}\N{NARROW NO-BREAK SPACE}{unit}"
+    return f"{seconds / 1e-9:.3g}\N{NARROW NO-BREAK SPACE}ns"
 
 
 def grouped(value: float) -> str:

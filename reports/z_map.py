@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fogproof.errors import InvalidValueError
+from fogproof.reports.axes import Axes, Scale
 from fogproof.reports.bins import closed
+from fogproof.reports.colours import diverging
+from fogproof.reports.sheet import Sheet
 from fogproof.reports.text import label
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True)
@@ -29,22 +28,21 @@ class ZMap:
         if n < 1 or m < 1 or shape != [n, [m]]:
             raise InvalidValueError("z", f"must have {n} rows of {m} cells, as its edges say", shape)
 
-    def draw(self, figure: Figure) -> str:
+    def draw(self, sheet: Sheet) -> str:
         """Draw the map: blue too few, red too many, colours ending at the largest |z| and not below 5."""
         z = np.array(self.z)
         known = np.abs(z[np.isfinite(z)])
         reach = max(5.0, float(known.max(initial=0)))
-        axes = figure.add_axes((0.13, 0.17, 0.68, 0.78))
         grid = [_increasing(np.array(axis)) for axis in self.edges]
-        mesh = axes.pcolormesh(*grid, z.T, cmap="RdBu_r", vmin=-reach, vmax=reach, rasterized=True)
-        axes.grid(False)
-        axes.locator_params(nbins=6)
-        for spine in axes.spines.values():
-            spine.set_label(True)
-        axes.set_xlabel(label(self.labels[0]))
-        axes.set_ylabel(label(self.labels[1]))
-        bar = figure.colorbar(mesh, cax=figure.add_axes((0.84, 0.17, 0.03, 0.78)))
-        bar.set_label("z = (observed − expected) / σ")
+        x, y = (Scale(float(axis[0]), float(axis[-1])) for axis in grid)
+        low, high, height = 70.0, sheet.width - 190, sheet.height - 64
+        axes = Axes(sheet, (low, 10, high, height), x, y)
+        axes.frame(label(self.labels[0]), label(self.labels[1]), rules=False)
+        axes.cells((grid[0], grid[1]), [[diverging(value / reach) for value in column] for column in z.tolist()])
+        bar = Axes(sheet, (low + high + 22, 10, 16, height), Scale(0, 1), Scale(-reach, reach))
+        shades = np.linspace(-reach, reach, 42)
+        bar.cells(((0, 1), shades), [[diverging(value) for value in np.linspace(-1, 1, 41)]])
+        bar.colour_scale("z = (observed − expected) / σ")
         if not known.size:
             return f"z of {z.size} cells over {label(self.labels[0])} and {label(self.labels[1])}; none is finite."
         i, j = np.unravel_index(int(np.argmax(np.where(np.isfinite(z), np.abs(z), -1))), z.shape)

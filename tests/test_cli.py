@@ -38,6 +38,15 @@ def test_verify_writes_a_report_and_exits_0(tmp_path):
     again = fogproof("report", tmp_path / "report")
     assert again.returncode == 0, again.stderr
     assert (tmp_path / "report" / "index.html").read_text() == page
+    both = fogproof("report", tmp_path / "report", "--against", tmp_path / "report")
+    assert both.returncode == 0, both.stderr
+    assert both.stdout.strip() == str(tmp_path / "report" / "comparison.html")
+    assert "Every case came out as before" in (tmp_path / "report" / "comparison.html").read_text()
+    record["cases"][0]["status"] = "rejected"
+    (tmp_path / "report" / "results.json").write_text(json.dumps(record))
+    (tmp_path / "old").mkdir()
+    (tmp_path / "old" / "results.json").write_text(json.dumps({**record, "cases": record["cases"][1:]}))
+    assert fogproof("report", tmp_path / "report", "--against", tmp_path / "old").returncode == 1
 
 
 def test_progress_is_silent_where_stderr_is_not_a_terminal():
@@ -123,6 +132,9 @@ BAD_CALLS = [
     (["plan", "nowhere.toml"], "cannot read the scene file nowhere.toml"),
     (["oracle", "nowhere.json"], "cannot read the request file nowhere.json"),
     (["report", "nowhere"], "cannot read nowhere"),
+    (["gallery", "luck", "-o", "/tmp"], "no picture is called 'luck'; known are phase-polar"),
+    (["gallery", "phase-polar", "-o", "/proc/nowhere"], "cannot write /proc/nowhere"),
+    (["gallery"], "Missing option '-o'"),
     (["dance"], "No such command"),
 ]
 

@@ -12,7 +12,7 @@ from report_records import Page
 
 from fogproof.reports import gallery, write_gallery
 from fogproof.reports.gallery_sky import SkyAndSunset
-from fogproof.reports.pictures import render
+from fogproof.reports.plots import render_plot
 
 NAMES = sorted(gallery.drawings(0))
 
@@ -33,6 +33,8 @@ def test_page_stands_alone_and_says_what_it_shows(page):
     read = Page(page)
     assert len(read.all("figure")) == len(NAMES)
     assert all(len(it["aria-label"]) > 60 for it in read.all("div") if it.get("role") == "img")
+    ids_of = [set(re.findall(r' id="([^"]+)"', svg)) for svg in re.findall(r"<svg.*?</svg>", read.html, re.S)]
+    assert sum(map(len, ids_of)) == len(set().union(*ids_of)) > 0
     used = [value for _, it in read.elements for name, value in it.items() if name in ("src", "xlink:href")]
     assert all(value.startswith(("data:", "#")) for value in used)
     ids = [it["id"] for _, it in read.elements if "id" in it]
@@ -41,7 +43,7 @@ def test_page_stands_alone_and_says_what_it_shows(page):
 
 @pytest.mark.parametrize("name", ["phase-henyey-greenstein", "samples-around-a-light", "sky-and-sunset"])
 def test_seed_decides_the_samples(name):
-    first, same, other = (render(gallery.drawings(seed)[name][1], name, png=False).svg for seed in (7, 7, 8))
+    first, same, other = (render_plot(gallery.drawings(seed)[name][1], name).svg for seed in (7, 7, 8))
     assert first == same
     assert first != other
 
@@ -52,6 +54,6 @@ def test_colours_of_an_estimate_come_nearer_with_samples():
     print("seed", seed)
     found = []
     for samples in (20, 200_000):
-        words = render(SkyAndSunset(np.random.default_rng(seed), samples), "sky", png=False).words
+        words = render_plot(SkyAndSunset(np.random.default_rng(seed), samples), "sky").words
         found.append(float(re.search(r"at most ([0-9]+[.][0-9]+)", words)[1]))
     assert found[1] < found[0] / 10

@@ -51,7 +51,7 @@ def test_report_has_all_its_files(tmp_path):
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        (None, "make one with: fogproof verify"),
+        (None, "the folder has no results.json; 'fogproof verify --report "),
         (b"", "ends in the middle"),
         (b'{"schema": "fogproof/results/1", "cases": [{"na', "not JSON"),
         (b'{"schema": "fogproof/results/1", "cases": [', "ends in the middle"),
@@ -167,6 +167,9 @@ def test_csv_has_one_row_a_case(tmp_path):
             assert float(row["p_value"]) == one["verdict"]["p_value"]
             assert float(row["resolution"]) == one["verdict"]["resolution"]["value"]
             assert row["samples"] == "1000000"
+            assert row["twin_outcome"] == "rejected"
+            assert row["twin_rejected_by"] == "mean cosine; chi-square in mu"
+            assert row["terms"] == ("attenuation" if one["plan"] else "")
         else:
             assert row["p_value"] == row["outcome"] == ""
 

@@ -6,6 +6,7 @@ import json
 import pytest
 
 from fogproof import catalogue, verify
+from fogproof.analytic.golden import golden_values
 from fogproof.errors import InvalidInputError
 
 FAST = ["free-path/surface/near", "transmittance/analog/thin", "fog/analog/haze"]
@@ -75,6 +76,33 @@ def test_an_expected_finding_is_known_and_a_surprise_in_either_direction_fails(m
     assert verify.exit_code([results["mended"]]) == 1
 
 
+def test_twins_are_run_on_demand_and_change_nothing_else():
+    plain, both = run(FAST), run(FAST, twins=True)
+    assert all(result.twin is None for result in plain.values())
+    for name in FAST:
+        twin = both[name].twin
+        assert findings(both[name]) == findings(plain[name])
+        assert twin.outcome == "rejected"
+        assert twin.checks
+        assert both[name].good
+
+
+def test_a_twin_that_is_not_rejected_fails_the_run_and_so_does_one_that_cannot_run(monkeypatch):
+    good = verify.select(["fog/analog/haze"])[0]
+    same = dataclasses.replace(good, name="blind", twin=dataclasses.replace(good.twin, make=good.make))
+    broken = dataclasses.replace(good, name="broken", twin=dataclasses.replace(good.twin, make=lambda: 1 / 0))
+    monkeypatch.setattr(verify, "all_cases", lambda: (*catalogue.all_cases(), same, broken))
+    results = run(["blind", "broken"], twins=True)
+    assert results["blind"].twin.outcome == "not rejected"
+    assert results["blind"].twin.samples == good.samples
+    assert results["broken"].twin.outcome == "error"
+    assert "ZeroDivisionError" in results["broken"].twin.reason
+    for result in results.values():
+        assert result.status == "passed"
+        assert not result.good
+        assert verify.exit_code([result]) == 1
+
+
 def test_inconclusive_alone_has_an_exit_code_of_its_own():
     result = run(FAST[:1])[FAST[0]]
     assert verify.exit_code([dataclasses.replace(result, status="inconclusive"), result]) == 3
@@ -86,6 +114,13 @@ def test_the_record_is_json_and_reproduces():
     again = json.loads(json.dumps(record, allow_nan=False))
     assert [case["name"] for case in again["cases"]] == [c.name for c in catalogue.all_cases() if c.name in FAST]
     assert "--seed 11" in again["cases"][0]["reproduce"]
+    assert "--alpha" not in again["cases"][0]["reproduce"]
+    plans = {case["name"]: case["plan"] for case in again["cases"]}
+    assert plans["fog/analog/haze"]["solver"] == "ambient_fog"
+    assert plans["free-path/surface/near"] is None
+    assert sum(row["values"] for row in again["oracle"]) == len(golden_values())
+    other = verify.record(results.values(), seed=11, alpha=0.01, command="", started="now", seconds=1.0)
+    assert other["cases"][0]["reproduce"].endswith("--alpha 0.01")
 
 
 def test_an_unknown_case_is_explained():

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from fogproof.checks import Finding, Verdict, check_estimator, check_sampler
     from fogproof.scene.files import read_scene
     from fogproof.scene.volume_files import read_voxel_grid
+    from fogproof.scene_estimator import estimator_for
 
 __version__ = "0.1.0"
 
@@ -48,6 +49,7 @@ __all__ = [
     "Verdict",
     "check_estimator",
     "check_sampler",
+    "estimator_for",
     "read_scene",
     "read_voxel_grid",
 ]
@@ -57,10 +59,11 @@ _LAZY = {
     "check_estimator": "fogproof.checks",
     "Verdict": "fogproof.checks",
     "Finding": "fogproof.checks",
+    "estimator_for": "fogproof.scene_estimator",
     "read_scene": "fogproof.scene.files",
     "read_voxel_grid": "fogproof.scene.volume_files",
 }
-_SUBPACKAGES = {"adapters", "analytic", "catalogue", "checks", "estimators", "reports", "scene"}
+_SUBPACKAGES = {"adapters", "analytic", "catalogue", "checks", "estimators", "reports", "scene", "study"}
 
 
 def __getattr__(name: str) -> Any:

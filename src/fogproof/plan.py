@@ -16,10 +16,11 @@ from fogproof.scene import (
     OpenGLFog,
     PiecewiseConstantMedium,
     Procedural,
+    Ray,
     Scene,
     VoxelGrid,
 )
-from fogproof.scene.lights import Environment, PointLight, SpotLight, strength
+from fogproof.scene.lights import DirectionalLight, Environment, PointLight, SpotLight, strength
 
 
 @dataclass(frozen=True)
@@ -61,6 +62,7 @@ def plan(scene: Scene) -> Plan:
     emits = absorbs and _any(medium.emission)
     background = _any(scene.background)
     light = scene.scattering == "single" and scene.light is not None and _any(strength(scene.light)) and scatters
+    light = light and not _too_far(scene)
     ambient = scene.scattering == "ambient" and _any(scene.ambient) and scatters
     terms = (
         Term("attenuation", not empty, "sigma_t = 0: T = 1" if empty else tracking),
@@ -70,33 +72,49 @@ def plan(scene: Scene) -> Plan:
         Term("colour", *_colour(scene)),
     )
     homogeneous = isinstance(medium, Medium)
-    if light and homogeneous and isinstance(scene.light, PointLight | SpotLight):
-        return Plan(
-            terms,
-            "single_scattering",
-            "Airlight, placing 'equiangular'",
-            "the airlight integral has no elementary form but converges fast after t = h sinh s; equiangular sampling cancels"
-            " the light's 1/r^2",
+    if light and isinstance(scene.light, PointLight | SpotLight):
+        integral = (
+            "the airlight integral has no elementary form but converges fast after t = h sinh s"
+            if homogeneous
+            else "nested adaptive quadrature, the transmittance of both legs by the medium's own rule"
         )
-    if light and homogeneous:
-        why = "in-scattered radiance from outside: the free path places the event, no 1/r^2 is in the way"
-        around = isinstance(scene.light, Environment)
-        estimator = "EnvironmentAirlight" if around else "Airlight, placing 'distance'"
-        return Plan(terms, "single_scattering", estimator, why)
+        why = f"{integral}; equiangular sampling cancels the light's 1/r^2"
+        return Plan(terms, "single_scattering", f"Airlight, placing 'equiangular'; {_THROUGH[type(medium)]}", why)
     if light:
-        why = (
-            "nested adaptive quadrature; equiangular sampling with the transmittance of both legs estimated by tracking"
-        )
-        return Plan(terms, "single_scattering", "equiangular sampling with ratio tracking", why)
+        why = "parallel light: no 1/r^2 is in the way, the event goes where the medium is"
+        return Plan(terms, "single_scattering", f"Airlight, placed in the medium; {_THROUGH[type(medium)]}", why)
     if emits or ambient:
+        varying = isinstance(medium, Procedural) and (callable(medium.albedo) or callable(medium.emission))
+        if varying:
+            why = "sources that vary along the ray: a path that collides looks them up"
+            return Plan(terms, "radiance_by_quadrature", "delta tracking to one collision", why)
         what = (
             "the closed lerp, no integral is left" if homogeneous else "a lerp over the optical thickness, cell by cell"
         )
-        return Plan(terms, "ambient_fog", "AnalogFog", f"sources that are constant along the ray: {what}")
+        why = f"sources that are constant along the ray: {what}"
+        return Plan(terms, "ambient_fog", f"the same lerp; {_THROUGH[type(medium)]}", why)
     if not empty:
-        estimator = "AnalogTransmittance" if homogeneous else _ESTIMATOR[type(medium)]
-        return Plan(terms, "transmittance", estimator, "nothing is gained along the ray: the background times T")
+        why = "nothing is gained along the ray: the background times T"
+        return Plan(terms, "transmittance", f"background x T; {_THROUGH[type(medium)]}", why)
     return Plan(terms, "the background itself", "", "an empty medium changes nothing: no random numbers at all")
+
+
+def scene_of(subject: Any) -> Scene | None:
+    """Return the scene that an estimator or sampler is about; None if it is about none (a phase function, say)."""
+    medium, ray = (getattr(subject, name, None) for name in ("medium", "ray"))
+    if not isinstance(medium, AnyMedium) or not isinstance(ray, Ray):
+        return None
+    light = getattr(subject, "light", None)
+    ambient = getattr(subject, "ambient", 0.0)
+    return Scene(
+        medium,
+        ray,
+        "single" if light is not None else "ambient" if np.any(ambient) else "none",
+        light,
+        getattr(subject, "occluders", ()),
+        ambient,
+        getattr(subject, "background", 0.0),
+    )
 
 
 _TRACKING: dict[type, str] = {
@@ -109,15 +127,18 @@ _TRACKING: dict[type, str] = {
     VoxelGrid: "voxels: a sum over the crossed cells, exact in each",
     Procedural: "a user's function: tracking under its majorant",
 }
-_ESTIMATOR: dict[type, str] = {
-    AnisotropicMedium: "AnalogTransmittance",
-    LinearMedium: "free paths by the closed inverse",
-    ExponentialMedium: "free paths by the closed inverse",
-    OpenGLFog: "free paths by the closed inverse",
-    PiecewiseConstantMedium: "regular tracking",
-    VoxelGrid: "regular tracking",
-    Procedural: "ratio tracking",
+_CLOSED = "T in closed form"
+_THROUGH: dict[type, str] = {
+    Medium: _CLOSED,
+    AnisotropicMedium: _CLOSED,
+    LinearMedium: _CLOSED,
+    ExponentialMedium: _CLOSED,
+    OpenGLFog: _CLOSED,
+    PiecewiseConstantMedium: "T layer by layer",
+    VoxelGrid: "T by regular tracking",
+    Procedural: "T by ratio tracking",
 }
+"""How `fogproof.scene_estimator` finds the transmittance."""
 
 
 def _any(value: Any) -> bool:
@@ -142,6 +163,11 @@ def _present(medium: AnyMedium) -> bool:
     return True
 
 
+def _too_far(scene: Scene) -> bool:
+    """Return whether light from infinitely far would have to cross an endless medium."""
+    return isinstance(scene.light, DirectionalLight | Environment) and isinstance(scene.medium, Medium)
+
+
 def _scattering(medium: AnyMedium) -> Any:
     return medium.sigma_s if isinstance(medium, Medium) else medium.albedo
 
@@ -162,11 +188,10 @@ def _in_scattering(scene: Scene, scatters: bool, light: bool, ambient: bool) -> 
         return f"one bounce from the {type(scene.light).__name__}, phase function {type(scene.medium.phase).__name__}{shadows}"
     if ambient:
         return "constant in-scattered radiance: the phase function integrates to 1 and drops out"
-    return "the light is off" if scene.scattering == "single" else "the ambient radiance is 0"
+    if scene.scattering == "ambient":
+        return "the ambient radiance is 0"
+    return "no light arrives from infinitely far" if _too_far(scene) else "the light is off"
 
 
 def _colour(scene: Scene) -> tuple[bool, str]:
-    values = [scene.ambient, scene.background, strength(scene.light) if scene.light else 0.0]
-    counts = {len(value) for value in values if isinstance(value, tuple)} | {scene.medium.channels}
-    counts -= {None}
-    return (True, f"{counts.pop()} channels") if counts else (False, "grey: one channel")
+    return (True, f"{scene.channels} channels") if scene.channels else (False, "grey: one channel")

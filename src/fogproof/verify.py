@@ -11,7 +11,7 @@ import platform
 import time
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -19,27 +19,51 @@ import numpy as np
 from fogproof.catalogue import Case, all_cases
 from fogproof.checks import Verdict, batch_generator, jsonable
 from fogproof.errors import FogproofError, InvalidInputError, NotInstalledError
+from fogproof.oracle_error import oracle_errors
+from fogproof.plan import plan, scene_of
 
 SCHEMA = "fogproof/results/1"
+ALPHA = 1e-6
+"""False-alarm probability of a run of the whole catalogue, unless told otherwise."""
 Status = Literal["passed", "rejected", "inconclusive", "known", "surprise", "skipped", "error"]
 _PACKAGES = {"mitsuba": ("Mitsuba 3", "mitsuba"), "miepython": ("miepython", "mie")}
 """Name and extra of each module that a case may need."""
+_TWIN_SAMPLES = 20_000
+"""A planted error is gross: most twins are rejected by so few samples. Those that are not get all that their case has."""
+
+
+@dataclass(frozen=True)
+class TwinResult:
+    """What the checks of a case said of its broken twin, and which of them rejected it; `reason` says why it did not run."""
+
+    outcome: Literal["rejected", "not rejected", "inconclusive", "error"]
+    checks: tuple[str, ...] = ()
+    cause: str = ""
+    p_value: float | None = None
+    samples: int = 0
+    seconds: float = 0.0
+    reason: str = ""
 
 
 @dataclass(frozen=True)
 class Result:
-    """What became of one case; `reason` says why it was skipped, failed to run, or is a known finding."""
+    """What became of one case; `reason` says why it was skipped, failed to run, or is a known finding.
+
+    twin  what became of its broken twin, None if that was not run
+    """
 
     case: Case
     status: Status
     verdict: Verdict | None
     reason: str
     seconds: float
+    twin: TwinResult | None = None
 
     @property
     def good(self) -> bool:
-        """Whether the outcome is the expected one, or the case was visibly skipped."""
-        return self.status in ("passed", "known", "skipped")
+        """Whether the outcome is the expected one, or the case was visibly skipped; and the twin, if run, was rejected."""
+        blind = self.twin is not None and self.twin.outcome != "rejected"
+        return self.status in ("passed", "known", "skipped") and not blind
 
 
 def select(patterns: Iterable[str]) -> list[Case]:
@@ -58,8 +82,8 @@ def select(patterns: Iterable[str]) -> list[Case]:
     return [c for c in cases if c.name in chosen] if patterns else list(cases)
 
 
-def run(cases: list[Case], *, seed: int, alpha: float, workers: int) -> Iterator[Result]:
-    """Run cases on threads, yielding each result as it is ready.
+def run(cases: list[Case], *, seed: int, alpha: float, workers: int, twins: bool = False) -> Iterator[Result]:
+    """Run cases on threads, yielding each result as it is ready; with `twins`, the broken twin of each as well.
 
     A case's share of alpha is set by the weights of the whole catalogue, whichever cases are run: choosing some of them does not
     change any verdict. Its random numbers depend on `seed` and its name alone: neither do the workers.
@@ -67,15 +91,41 @@ def run(cases: list[Case], *, seed: int, alpha: float, workers: int) -> Iterator
     total = sum(case.weight for case in all_cases())
     pool = ThreadPoolExecutor(max_workers=workers)
     try:
-        jobs = [pool.submit(run_case, case, seed, alpha * case.weight / total) for case in cases]
+        jobs = [pool.submit(run_case, case, seed, alpha * case.weight / total, twins) for case in cases]
         for job in as_completed(jobs):
             yield job.result()
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
 
 
-def run_case(case: Case, seed: int, alpha: float) -> Result:
+def run_case(case: Case, seed: int, alpha: float, twins: bool = False) -> Result:
     """Run one case; whatever goes wrong in it is its result, never the end of the run."""
+    result = _run_subject(case, seed, alpha)
+    return replace(result, twin=run_twin(case, seed, alpha)) if twins and result.status != "skipped" else result
+
+
+def run_twin(case: Case, seed: int, alpha: float) -> TwinResult:
+    """Put the broken twin of a case to the same checks, inside the same false-alarm probability."""
+    started = time.perf_counter()
+    few = min(_TWIN_SAMPLES, case.samples)
+    try:
+        verdict = case.run(alpha, case_seed(seed, case.name), few, twin=True)
+        if verdict.outcome != "rejected" and few < case.samples:
+            verdict = case.run(alpha, case_seed(seed, case.name), twin=True)
+    except Exception as error:  # the same as of a subject: a defect of one twin is its own result
+        return TwinResult("error", seconds=time.perf_counter() - started, reason=f"{type(error).__name__}: {error}")
+    rejecting = [finding for finding in verdict.findings if finding.outcome == "rejected"]
+    return TwinResult(
+        verdict.outcome,
+        tuple(finding.check for finding in rejecting),
+        verdict.cause,
+        min((finding.p_value for finding in rejecting if finding.p_value is not None), default=None),
+        verdict.samples,
+        time.perf_counter() - started,
+    )
+
+
+def _run_subject(case: Case, seed: int, alpha: float) -> Result:
     started = time.perf_counter()
     try:
         if case.needs and importlib.util.find_spec(case.needs) is None:
@@ -103,9 +153,13 @@ def case_seed(seed: int, name: str) -> int:
 
 
 def exit_code(results: Iterable[Result]) -> int:
-    """Return 0 if every outcome is as expected, 1 if something was rejected or failed, 3 if something was only inconclusive."""
+    """Return 0 if every outcome is as expected, 1 if something was rejected or failed, 3 if something was only inconclusive.
+
+    A broken twin that was not rejected counts as a failure: its checks are blind.
+    """
+    results = list(results)
     statuses = {result.status for result in results}
-    if statuses & {"rejected", "surprise", "error"}:
+    if statuses & {"rejected", "surprise", "error"} or any(r.twin and r.twin.outcome != "rejected" for r in results):
         return 1
     return 3 if "inconclusive" in statuses else 0
 
@@ -113,7 +167,10 @@ def exit_code(results: Iterable[Result]) -> int:
 def record(
     results: Iterable[Result], *, seed: int, alpha: float, command: str, started: str, seconds: float
 ) -> dict[str, Any]:
-    """Return the JSON-ready record of a run, cases in the order of the catalogue."""
+    """Return the JSON-ready record of a run, cases in the order of the catalogue.
+
+    `oracle` in it is the oracle's own error against proven values, measured here and now (a third of a second).
+    """
     order = {case.name: i for i, case in enumerate(all_cases())}
     ordered = sorted(results, key=lambda result: order[result.case.name])
     return jsonable(
@@ -128,12 +185,19 @@ def record(
             "started": started,
             "seconds": seconds,
             "exit_code": exit_code(ordered),
-            "cases": [_case_record(result, seed) for result in ordered],
+            "oracle": oracle_errors(),
+            "cases": [_case_record(result, seed, alpha) for result in ordered],
         }
     )
 
 
-def _case_record(result: Result, seed: int) -> dict[str, Any]:
+def reproduce(case: Case, seed: int, alpha: float) -> str:
+    """Return the command that runs a case again, with the same random numbers and the same verdict."""
+    share = "" if alpha == ALPHA else f" --alpha {alpha:g}"
+    return f"fogproof verify '{case.name}' --seed {seed}{share}"
+
+
+def _case_record(result: Result, seed: int, alpha: float) -> dict[str, Any]:
     case = result.case
     return {
         "name": case.name,
@@ -145,10 +209,21 @@ def _case_record(result: Result, seed: int) -> dict[str, Any]:
         "source": case.source,
         "reference": f"fogproof.analytic: {case.oracle}",
         "twin": case.twin.error,
-        "reproduce": f"fogproof verify '{case.name}' --seed {seed}",
+        "twin_result": result.twin,
+        "plan": None if result.verdict is None else _plan(case),
+        "reproduce": reproduce(case, seed, alpha),
         "seconds": result.seconds,
         "verdict": None if result.verdict is None else result.verdict.to_dict(),
     }
+
+
+def _plan(case: Case) -> dict[str, Any] | None:
+    """Return which terms the case's scene needs, None if it is about no scene."""
+    try:
+        scene = scene_of(case.make())
+        return None if scene is None else plan(scene).to_dict()
+    except Exception:  # results are worth more than what is said beside them
+        return None
 
 
 def _environment() -> dict[str, Any]:

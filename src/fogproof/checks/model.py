@@ -26,7 +26,7 @@ _PROBES = 32  # points of a panel at which its polynomial is compared with the d
 _POINTS = 4096  # of the pilot that are compared on a plane
 _ROUNDS = 12  # of looking and cutting
 _MOST_CUT = 256  # boxes cut in one round of looking
-_RELATIVE = 0.02  # a polynomial that is wrong by less misses no feature
+_RELATIVE = 1e-3  # a polynomial that is wrong by less misses no feature
 
 
 @dataclass(frozen=True)

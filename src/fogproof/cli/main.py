@@ -16,7 +16,9 @@ _COMMANDS = {
     "list": "Show the cases of the catalogue.",
     "oracle": "Answer JSON requests with reference values and error bounds.",
     "plan": "Say which terms a scene needs, and which methods serve it.",
-    "report": "Make the page of a run again from its results.json.",
+    "study": "Measure speed against error, resumable, on one core or a cluster.",
+    "report": "Make the page of a run again, or compare two runs.",
+    "gallery": "Draw the theory's pictures: oracle's curves, estimators' samples.",
 }
 
 

@@ -9,13 +9,28 @@ import click
 
 @click.command("report")
 @click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
-def command(folder: Path) -> int:
-    """Make the page of a run again from the results.json in DIR.
+@click.option(
+    "--against",
+    "older",
+    metavar="OLD",
+    type=click.Path(path_type=Path),
+    help="Compare with an older run's folder as well: what came out worse, what was mended.",
+)
+def command(folder: Path, older: Path | None) -> int:
+    """Make the page of a run again from the results.json in DIR, and print its path.
+
+    With --against, print the path of DIR/comparison.html instead; its exit code is 1 if something came out worse.
 
     \b
-    Example:  fogproof report build/report
+    Examples:  fogproof report build/report
+               fogproof report build/report --against last-week
     """
-    from fogproof.reports import read_record, write_report
+    from fogproof.reports import came_out_worse, read_record, write_comparison, write_report
 
-    click.echo(str(write_report(read_record(folder), folder)))
-    return 0
+    record = read_record(folder)
+    before = read_record(older) if older else None
+    page = write_report(record, folder, keep=True)
+    if before is not None:
+        page = write_comparison(before, record, folder)
+    click.echo(str(page))
+    return int(before is not None and came_out_worse(before, record))

@@ -13,7 +13,7 @@ import click
 
 from fogproof.checks import fresh_seed
 from fogproof.errors import InvalidValueError
-from fogproof.verify import Result, exit_code, record, run, select
+from fogproof.verify import ALPHA, Result, exit_code, record, reproduce, run, select
 
 
 @click.command("verify")
@@ -28,14 +28,21 @@ from fogproof.verify import Result, exit_code, record, run, select
     "--seed", type=click.IntRange(min=0), help="Seed of the run; a fresh one is drawn and printed by default."
 )
 @click.option(
-    "--alpha", type=float, default=1e-6, show_default=True, help="False-alarm probability of the whole catalogue."
+    "--alpha", type=float, default=ALPHA, show_default=True, help="False-alarm probability of the whole catalogue."
 )
 @click.option(
     "--workers", type=click.IntRange(min=1), default=2, show_default=True, help="Threads; results do not depend on it."
 )
+@click.option("--twins", is_flag=True, help="Run every broken twin as well: the same checks must reject it.")
 @click.option("--json", "as_json", is_flag=True, help="Print the record of the run as JSON instead of rows.")
 def command(
-    cases: tuple[str, ...], folder: Path | None, seed: int | None, alpha: float, workers: int, as_json: bool
+    cases: tuple[str, ...],
+    folder: Path | None,
+    seed: int | None,
+    alpha: float,
+    workers: int,
+    twins: bool,
+    as_json: bool,
 ) -> int:
     """Check every sampler and estimator against its reference.
 
@@ -60,7 +67,7 @@ def command(
         click.echo(_row(width, "case", "outcome", "smallest p", "resolution", "samples", "seconds"))
     try:
         with _progress(len(chosen)) as advance:
-            for result in run(chosen, seed=seed, alpha=alpha, workers=workers):
+            for result in run(chosen, seed=seed, alpha=alpha, workers=workers, twins=twins):
                 results.append(result)
                 if not as_json:
                     advance.print(_describe(width, result))
@@ -68,22 +75,22 @@ def command(
     except KeyboardInterrupt:
         interrupted = True
         click.echo(f"stopped after {len(results)} of {len(chosen)} cases; these are kept", err=True)
-    run_record = record(
-        results,
-        seed=seed,
-        alpha=alpha,
-        command=shlex.join(["fogproof", *sys.argv[1:]]),
-        started=started.isoformat(timespec="seconds"),
-        seconds=time.perf_counter() - clock,
-    )
-    if as_json:
-        click.echo(json.dumps(run_record))
-    _explain(results, seed)
-    if folder is not None:
-        from fogproof.reports import write_report
+    _explain(results, seed, alpha)
+    if as_json or folder is not None:
+        run_record = record(
+            results,
+            seed=seed,
+            alpha=alpha,
+            command=shlex.join(["fogproof", *sys.argv[1:]]),
+            started=started.isoformat(timespec="seconds"),
+            seconds=time.perf_counter() - clock,
+        )
+        if as_json:
+            click.echo(json.dumps(run_record))
+        if folder is not None:
+            from fogproof.reports import write_report
 
-        page = write_report(run_record, folder)
-        click.echo(f"report: {page}", err=True)
+            click.echo(f"report: {write_report(run_record, folder)}", err=True)
     return 130 if interrupted else exit_code(results)
 
 
@@ -102,19 +109,30 @@ def _describe(width: int, result: Result) -> str:
     return _row(width, result.case.name, outcome, p, resolution, str(verdict.samples), f"{result.seconds:.2f}")
 
 
-def _explain(results: list[Result], seed: int) -> None:
+def _explain(results: list[Result], seed: int, alpha: float) -> None:
     for result in results:
         if not result.good:
-            what = result.reason if result.verdict is None else str(result.verdict)
-            click.echo(
-                f"\n{result.case.name}: {what}\n  reproduce: fogproof verify '{result.case.name}' --seed {seed}",
-                err=True,
-            )
+            again = reproduce(result.case, seed, alpha) + (" --twins" if result.twin else "")
+            for what in _faults(result):
+                click.echo(f"\n{result.case.name}: {what}\n  reproduce: {again}", err=True)
     counts: dict[str, int] = {}
     for result in results:
         counts[result.status] = counts.get(result.status, 0) + 1
     summary = ", ".join(f"{count} {status}" for status, count in counts.items())
-    click.echo(f"{len(results)} cases: {summary}; seed {seed}", err=True)
+    twins = [result.twin for result in results if result.twin]
+    rejected = sum(twin.outcome == "rejected" for twin in twins)
+    caught = f"; {rejected} of {len(twins)} broken twins rejected" if twins else ""
+    click.echo(f"{len(results)} cases: {summary}{caught}; seed {seed}", err=True)
+
+
+def _faults(result: Result) -> list[str]:
+    faults = []
+    if result.status not in ("passed", "known", "skipped"):
+        faults.append(result.reason if result.verdict is None else str(result.verdict))
+    if result.twin and result.twin.outcome != "rejected":
+        what = f"its broken twin ({result.case.twin.error}) was not rejected: {result.twin.outcome}"
+        faults.append(f"{what}; {result.twin.reason}" if result.twin.reason else what)
+    return faults
 
 
 class _Advance:

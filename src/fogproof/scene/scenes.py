@@ -57,7 +57,12 @@ class Scene:
             )
         if not isinstance(self.medium, AnyMedium):
             raise InvalidValueError("medium", "must be a medium", self.medium, "for example Medium(sigma_a, sigma_s)")
-        channel_count(
+        _ = self.channels
+
+    @property
+    def channels(self) -> int | None:
+        """How many channels medium, light, ambient and background have together; None if all are grey."""
+        return channel_count(
             medium=(0.0,) * self.medium.channels if self.medium.channels else 0.0,
             light=strength(self.light) if self.light else 0.0,
             ambient=self.ambient,

@@ -1,0 +1,33 @@
+"""`fogproof gallery`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+
+@click.command("gallery")
+@click.argument("pictures", nargs=-1, metavar="[PICTURE]...")
+@click.option(
+    "-o",
+    "--output",
+    "folder",
+    required=True,
+    metavar="DIR",
+    type=click.Path(path_type=Path, file_okay=False),
+    help="Write the page and the pictures here.",
+)
+@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of everything sampled.")
+def command(pictures: tuple[str, ...], folder: Path, seed: int) -> int:
+    """Draw the theory's pictures: the oracle's curves, and behind them what the estimators sample.
+
+    PICTURE is a name under DIR/figures, such as fog; without any, all are drawn. The page's path goes to stdout.
+
+    \b
+    Example:  fogproof gallery -o build/gallery
+    """
+    from fogproof.reports import write_gallery
+
+    click.echo(str(write_gallery(folder, seed, pictures)))
+    return 0

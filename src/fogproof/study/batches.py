@@ -1,0 +1,128 @@
+"""Drawing one batch: moments of each replicate, of the squared deviations, the largest deviations, and the time it took."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from typing import cast
+
+import numpy as np
+
+from fogproof.checks import batch_generator
+from fogproof.contracts import Draws
+from fogproof.errors import SubjectError
+from fogproof.study.cells import MARCHES, SOBOL_CALL, Batch, Cell, cells_of_text
+from fogproof.study.sobol import SobolSequence
+
+COLUMNS = ("n", "mean", "m2", "m3", "m4", "low", "high", "at_low", "at_high", "bad")
+"""Of a row of moments; `at_low` and `at_high` count the smallest and the largest value, `bad` what is not finite."""
+TAIL = 64
+"""Largest deviations a batch keeps."""
+TAIL_SHARE = 64
+"""They are at most one in so many of its samples."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class BatchResult:
+    """What a batch leaves behind.
+
+    index    of the batch
+    moments  (replicates + 1, columns): one row a replicate, the last of (X - reference)^2 over the whole batch
+    tail     the largest |X - reference|, rising
+    cost     mean look-ups of a realisation, NaN where the estimator does not count them
+    wall, cpu  seconds; of this thread's processor time
+    """
+
+    index: int
+    moments: np.ndarray
+    tail: np.ndarray
+    cost: float
+    wall: float
+    cpu: float
+
+
+def run_batch(text: str, folder: str, batch: Batch, reference: float) -> BatchResult:
+    """Draw a batch of the study with this text; the same wherever it runs."""
+    return draw_batch(cells_of_text(text, folder)[batch.cell], batch, reference)
+
+
+def draw_batch(cell: Cell, batch: Batch, reference: float) -> BatchResult:
+    """Draw a batch of a cell."""
+    estimator = cell.estimator(batch.count)
+    wall, cpu = time.perf_counter(), time.thread_time()
+    if cell.points == "sobol":
+        x, cost = _with_sobol_points(cell, estimator, batch)
+    elif cell.method.axis == "steps":
+        rng = np.random.default_rng(0)
+        draws = [_numbers(estimator.draw(rng, 1), 1) for _ in range(MARCHES)]
+        x, cost = np.concatenate([values for values, _ in draws]), draws[0][1]
+    else:
+        rng = batch_generator(cell.study.seed, f"{cell.stream}/{batch.count}", batch.first, batch.start)
+        n = batch.replicates * batch.samples
+        x, cost = _numbers(estimator.draw(rng, n), n)
+    cpu, wall = time.thread_time() - cpu, time.perf_counter() - wall
+    x = x.reshape(batch.replicates, batch.samples)
+    deviations = np.abs(x - reference)
+    with np.errstate(over="ignore", invalid="ignore"):
+        moments = np.concatenate([moments_of(x), moments_of(np.square(deviations).reshape(1, -1))])
+    return BatchResult(batch.index, moments, _largest(deviations.ravel()), cost, wall, cpu)
+
+
+def moments_of(x: np.ndarray) -> np.ndarray:
+    """Return rows of `COLUMNS` for each row of x (rows, n); numbers that are not finite are counted and left out."""
+    finite = np.isfinite(x)
+    if not finite.all():
+        return np.concatenate([_row_with_gaps(row[good], len(row)) for row, good in zip(x, finite, strict=True)])
+    n = np.full(len(x), float(x.shape[1]))
+    low, high = x.min(axis=1), x.max(axis=1)
+    # Rounding must not leave a constant with a variance.
+    mean = np.where(low == high, low, np.clip(x.mean(axis=1), low, high))
+    d = x - mean[:, None]
+    d2 = d * d
+    sums = [d2.sum(axis=1), (d2 * d).sum(axis=1), (d2 * d2).sum(axis=1)]
+    ends = [np.count_nonzero(x == end[:, None], axis=1).astype(float) for end in (low, high)]
+    return np.stack([n, mean, *sums, low, high, *ends, np.zeros(len(x))], axis=1)
+
+
+def _row_with_gaps(finite: np.ndarray, n: int) -> np.ndarray:
+    if len(finite):
+        row = moments_of(finite[None])
+    else:
+        row = np.zeros((1, len(COLUMNS)))
+        row[0, COLUMNS.index("low")], row[0, COLUMNS.index("high")] = np.inf, -np.inf
+    row[0, -1] = n - len(finite)
+    return row
+
+
+def _largest(deviations: np.ndarray) -> np.ndarray:
+    keep = min(TAIL, len(deviations) // TAIL_SHARE)
+    finite = deviations[np.isfinite(deviations)]
+    if keep == 0 or len(finite) <= keep:
+        return np.empty(0)
+    return np.sort(np.partition(finite, len(finite) - keep)[-keep:])
+
+
+def _numbers(result: object, n: int) -> tuple[np.ndarray, float]:
+    draws = result if isinstance(result, Draws) else Draws(cast(np.ndarray, result))
+    x = np.ascontiguousarray(draws.value, dtype=np.float64)
+    if x.shape not in ((n,), (n, 1)):
+        raise SubjectError(f"draw must return an array of shape ({n},), got {x.shape}", "draw: value")
+    cost = float("nan") if draws.cost is None else float(np.mean(draws.cost))
+    return x.reshape(n), cost
+
+
+def _with_sobol_points(cell: Cell, estimator: object, batch: Batch) -> tuple[np.ndarray, float]:
+    """Draw each replicate with a scrambling of its own; a batch inside a replicate goes on in its sequence."""
+    dimensions = cell.method.dimensions
+    assert dimensions is not None
+    values, costs = [], []
+    for replicate in range(batch.first, batch.first + batch.replicates):
+        scrambling = batch_generator(cell.study.seed, f"{cell.stream}/{batch.count}", replicate, 0)
+        behind = batch_generator(cell.study.seed, f"{cell.stream}/{batch.count}", replicate, 1 + batch.start)
+        sequence = SobolSequence(dimensions, scrambling, behind, batch.start)
+        for start in range(0, batch.samples, SOBOL_CALL):
+            n = min(SOBOL_CALL, batch.samples - start)
+            x, cost = _numbers(estimator.draw(sequence.points(n), n), n)  # type: ignore[attr-defined]
+            values.append(x)
+            costs.append(cost)
+    return np.concatenate(values), float(np.mean(costs))

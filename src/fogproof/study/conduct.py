@@ -1,0 +1,61 @@
+"""A study from beginning to end in a run folder: the store opened, what is missing drawn, the record written."""
+
+from __future__ import annotations
+
+import datetime
+import json
+import time
+from pathlib import Path
+from typing import Any
+
+from fogproof.study.cells import batches_of, cells_of, prepare
+from fogproof.study.executors import crew
+from fogproof.study.files import Study
+from fogproof.study.history import compare
+from fogproof.study.progress import Progress
+from fogproof.study.record import Circumstances, environment, make_record, read_results, table
+from fogproof.study.run import draw_missing
+from fogproof.study.store import opened
+
+
+def run_study(
+    study: Study,
+    folder: str | Path,
+    *,
+    executor: str = "threads",
+    workers: int | None = None,
+    against: str | Path | None = None,
+    salvage: bool = False,
+    command: str = "",
+) -> dict[str, Any]:
+    """Draw what is missing of a study in its folder, write `results.json` and `results.csv` there, and return the record.
+
+    executor  "threads", "processes" or "dask://host:port"
+    workers   threads or processes; None for one a core
+    against   folder or results.json of an earlier run that this one is compared with
+    salvage   whether a damaged store is put aside, and what can be read of it used
+    command   how the run was called, for the record
+    """
+    folder = Path(folder)
+    started, clock = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"), time.perf_counter()
+    before = None if against is None else read_results(Path(against))
+    cells = cells_of(study)
+    batches = batches_of(cells)
+    with opened(folder, study, salvage) as store:
+        prepare(cells)
+        missing = len(batches) - store.count()
+        slots = 0
+        if missing:
+            with crew(executor, workers) as hands, Progress(cells, batches, store.done(), hands.slots) as progress:
+                store.begin(started, json.dumps(environment(), sort_keys=True))
+                draw_missing(study, cells, batches, store, hands, progress.advance)
+                slots = hands.slots
+        run = Circumstances(command, started, time.perf_counter() - clock, executor, slots)
+        record = make_record(study, cells, batches, store, run)
+    from fogproof.reports.files import write_file
+
+    if before is not None:
+        record["history"] = compare(before, record)
+    write_file(folder / "results.json", json.dumps(record, indent=1, allow_nan=False) + "\n")
+    write_file(folder / "results.csv", table(record))
+    return record

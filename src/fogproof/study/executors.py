@@ -1,0 +1,105 @@
+"""Where batches are drawn: threads, processes, or a Dask cluster, all behind `concurrent.futures`.
+
+A worker that dies takes its batches with it. They are drawn again: by a new pool, or by Dask elsewhere. `Crew.restart` makes the
+new pool; whether a batch kills its workers is for the caller to find out.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import multiprocessing
+import os
+import signal
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
+from dataclasses import dataclass, field
+from typing import Any
+
+from fogproof.errors import InvalidValueError, NotInstalledError, SubjectError
+
+PATIENCE = 10.0
+"""Seconds a scheduler has to answer."""
+
+
+class ClusterError(SubjectError):
+    """A cluster cannot be reached, or has been lost; what has been drawn is kept."""
+
+    code = "cluster"
+
+
+@dataclass
+class Crew:
+    """An executor and how to get another one.
+
+    slots  batches that can be drawn at the same time
+    """
+
+    make: Callable[[], Executor]
+    slots: int
+    executor: Executor = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.executor = self.make()
+
+    def restart(self) -> None:
+        """Put a new executor in the place of one that has broken."""
+        self.executor.shutdown(wait=False, cancel_futures=True)
+        self.executor = self.make()
+
+
+def available() -> int:
+    """Return how many processors this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+@contextlib.contextmanager
+def crew(where: str, workers: int | None) -> Iterator[Crew]:
+    """Open a crew: "threads", "processes", or "dask://host:port" for a cluster, whose workers are its own."""
+    if where.startswith("dask://"):
+        with _dask(where.removeprefix("dask://")) as made:
+            yield made
+        return
+    n = workers or available()
+    if where == "threads":
+        made = Crew(lambda: ThreadPoolExecutor(n), n)
+    elif where == "processes":
+        made = Crew(lambda: ProcessPoolExecutor(n, _context(), initializer=_deaf_to_ctrl_c), n)
+    else:
+        raise InvalidValueError("--executor", "must be threads, processes or dask://host:port", where)
+    try:
+        yield made
+    finally:
+        made.executor.shutdown(wait=True, cancel_futures=True)
+
+
+def _context() -> Any:
+    """Return how processes begin: never as a fork of this one, which would copy locks that other threads hold."""
+    if "forkserver" not in multiprocessing.get_all_start_methods():
+        return multiprocessing.get_context("spawn")
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(["fogproof.study.batches"])
+    return context
+
+
+def _deaf_to_ctrl_c() -> None:
+    """Leave Ctrl-C to the process that coordinates: it wants the batches that are under way."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+@contextlib.contextmanager
+def _dask(address: str) -> Iterator[Crew]:
+    try:
+        from distributed import Client
+    except ImportError:
+        raise NotInstalledError("Dask", "dask") from None
+    try:
+        client: Any = Client(f"tcp://{address}", timeout=PATIENCE, set_as_default=False)
+    except (OSError, ValueError) as error:
+        raise ClusterError(f"no Dask scheduler answers at {address}: {error}", "--executor") from None
+    try:
+        threads = sum(client.nthreads().values())
+        # pure=False: by default equal calls are taken to be one, and copies of its result come back.
+        yield Crew(lambda: client.get_executor(pure=False), max(threads, 1))
+    finally:
+        with contextlib.suppress(Exception):  # a cluster that has gone cannot be told goodbye
+            client.close(timeout=5)

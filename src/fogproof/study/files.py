@@ -1,0 +1,214 @@
+"""Study files: what is measured, read from TOML with one sentence for every fault.
+
+A study is its text: the normalised JSON of the file, from which every process that runs batches builds the same scenes. Comments,
+blanks and the order of keys do not belong to it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import tomllib
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Literal, get_args
+
+import numpy as np
+
+from fogproof.analytic import ambient_fog, single_scattering, transmittance
+from fogproof.contracts import Reference
+from fogproof.errors import InvalidInputError, InvalidValueError, UnsupportedError, shorten
+from fogproof.scene import AnyMedium, Ray
+from fogproof.scene.files import read_fields
+from fogproof.scene.lights import LightField
+from fogproof.scene.occluders import OccluderField
+from fogproof.study.media import StudyMedium, built, sha256_of
+from fogproof.study.methods import MethodField
+from fogproof.validate import number
+
+Quantity = Literal["transmittance", "fog", "airlight"]
+UNITS = {"transmittance": "1", "fog": "W/(m^2 sr)", "airlight": "W/(m^2 sr)"}
+LARGEST_COUNT = 1 << 40
+
+
+@dataclass(frozen=True, eq=False)
+class StudyScene:
+    """One scene, and the estimators that are measured in it.
+
+    quantity    what they estimate: "transmittance" along the ray; "fog", the radiance in constant in-scattered light; "airlight",
+                the radiance scattered once from the light
+    estimators  see `methods`
+    question    which question the scene helps to answer, "" for none
+    """
+
+    name: str
+    quantity: Quantity
+    medium: StudyMedium
+    ray: Ray
+    estimators: tuple[MethodField, ...]
+    question: str = ""
+    light: LightField | None = None
+    occluders: tuple[OccluderField, ...] = ()
+    ambient: float = 0.0
+    background: float = 0.0
+
+    def __post_init__(self) -> None:
+        number("ambient", self.ambient, "must be finite and >= 0 [W/(m^2 sr)]", 0)
+        number("background", self.background, "must be finite and >= 0 [W/(m^2 sr)]", 0)
+        if self.quantity not in get_args(Quantity):
+            raise InvalidValueError("quantity", f"must be one of {', '.join(get_args(Quantity))}", self.quantity)
+        if self.ray.shape:
+            raise InvalidValueError("ray", "must be one ray", list(self.ray.shape))
+        if not self.estimators:
+            raise InvalidValueError("estimators", "must name at least one", [])
+
+    @cached_property
+    def matter(self) -> AnyMedium:
+        """The medium, built; it is grey."""
+        medium = built(self.medium)
+        if medium.channels is not None:
+            what = f"the medium of scene {self.name!r} has {medium.channels} channels"
+            raise UnsupportedError(f"a study follows one channel, {what}: give numbers, not lists", "medium")
+        return medium
+
+    def reference(self) -> Reference:
+        """Return what the oracle says."""
+        match self.quantity:
+            case "transmittance":
+                return transmittance(self.matter, self.ray)
+            case "fog":
+                return ambient_fog(self.matter, self.ray, self.ambient, self.background)
+        if self.light is None:
+            raise InvalidValueError("light", "must be given for the airlight", None, "add a light to the scene")
+        return single_scattering(self.matter, self.ray, self.light, occluders=self.occluders)
+
+
+@dataclass(frozen=True, eq=False)
+class Study:
+    """What is measured: scenes x estimators x sample counts x replicates.
+
+    samples     sample counts, rising; decades are usual
+    replicates  independent estimates at each count: how sure a measured RMSE is
+    batch       most samples that are drawn, and lost by an interruption, at once
+    sobol       whether scrambled Sobol points are tried beside random ones where the estimator is a pure function of uniforms
+    alpha       false-alarm probability of the whole study
+    text        the normalised JSON of the file
+    folder      where the study file lies: relative paths start there
+    """
+
+    samples: tuple[int, ...]
+    scenes: tuple[StudyScene, ...]
+    title: str = ""
+    replicates: int = 32
+    batch: int = 1 << 16
+    sobol: bool = True
+    seed: int = 1
+    alpha: float = 1e-6
+    text: str = ""
+    folder: str = ""
+
+    def __post_init__(self) -> None:
+        counts = np.array(self.samples, dtype=object)
+        good = len(counts) > 0 and all(1 <= n <= LARGEST_COUNT for n in counts) and all(np.diff(counts) > 0)
+        if not good:
+            raise InvalidValueError("samples", "must be rising whole numbers >= 1", self.samples)
+        for name, least in (("replicates", 4), ("batch", 64), ("seed", 0)):
+            if not least <= getattr(self, name) < 1 << 63:
+                raise InvalidValueError(name, f"must be a whole number >= {least}", getattr(self, name))
+        number("alpha", self.alpha, "must lie in (0, 1)", 0, 1, open_ends=True)
+        names = [scene.name for scene in self.scenes]
+        if not names:
+            raise InvalidValueError("scenes", "must not be empty", [], "add a [[scenes]] table")
+        for name in names:
+            if names.count(name) > 1:
+                raise InvalidValueError("scenes", "must have different names", name)
+
+    @property
+    def fingerprint(self) -> str:
+        """What identifies the study: batches of another one do not belong to it."""
+        return hashlib.sha256(self.text.encode()).hexdigest()[:32]
+
+
+def read_study(path: str | Path) -> Study:
+    """Read a study file; every fault is a `FogproofError` that names the file and the key."""
+    path = Path(path)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
+        raise InvalidInputError(f"cannot read the study file {path}: {reason}", str(path)) from None
+    try:
+        table = tomllib.loads(text)
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
+        raise InvalidInputError(f"{path} is not valid TOML: {error}", str(path)) from None
+    folder = str(path.resolve().parent)
+    return study_of(json.dumps(_normalised(table, folder), sort_keys=True, default=str), folder, str(path))
+
+
+def study_of(text: str, folder: str, origin: str = "study") -> Study:
+    """Return the study that a text describes."""
+    table = json.loads(text)
+    types = {
+        "samples": tuple[int, ...],
+        "scenes": tuple[StudyScene, ...],
+        "title": (str, ""),
+        "replicates": (int, 32),
+        "batch": (int, 1 << 16),
+        "sobol": (bool, True),
+        "seed": (int, 1),
+        "alpha": (float, 1e-6),
+    }
+    fields = read_fields(types, _with_paths(table, folder), origin)
+    try:
+        return Study(**fields, text=text, folder=folder)
+    except InvalidValueError as error:
+        raise error.inside("the study", origin) from None
+
+
+def differences(before: str, after: str) -> list[str]:
+    """Return in words, one line a key, how the text of one study differs from that of another."""
+    old, new = _flat(json.loads(before)), _flat(json.loads(after))
+    lines = []
+    for key in sorted({*old, *new}):
+        if key not in new:
+            lines.append(f"{key} = {shorten(old[key])} is gone")
+        elif key not in old:
+            lines.append(f"{key} = {shorten(new[key])} is new")
+        elif old[key] != new[key]:
+            lines.append(f"{key}: {shorten(old[key])} has become {shorten(new[key])}")
+    return lines
+
+
+def _flat(value: Any, place: str = "") -> dict[str, Any]:
+    if isinstance(value, dict) and value:
+        return {k: v for key, item in value.items() for k, v in _flat(item, f"{place}.{key}" if place else key).items()}
+    if isinstance(value, list) and any(isinstance(item, dict | list) for item in value):
+        return {k: v for i, item in enumerate(value) for k, v in _flat(item, f"{place}[{i}]").items()}
+    return {place: value}
+
+
+def _scene_tables(table: Any) -> list[dict[str, Any]]:
+    scenes = table.get("scenes", []) if isinstance(table, dict) else []
+    return [scene for scene in scenes if isinstance(scene, dict)] if isinstance(scenes, list) else []
+
+
+def _normalised(table: dict[str, Any], folder: str) -> dict[str, Any]:
+    """Return the table with estimators that are mere names spelt out, and files of voxels signed."""
+    for scene in _scene_tables(table):
+        names = scene.get("estimators")
+        if isinstance(names, list):
+            scene["estimators"] = [{"kind": name} if isinstance(name, str) else name for name in names]
+        medium = scene.get("medium")
+        if isinstance(medium, dict) and medium.get("kind") == "grid-file" and isinstance(medium.get("path"), str):
+            medium["sha256"] = sha256_of(Path(folder) / medium["path"])
+    return table
+
+
+def _with_paths(table: dict[str, Any], folder: str) -> dict[str, Any]:
+    """Return the table with absolute paths, which are not part of what identifies the study."""
+    for scene in _scene_tables(table):
+        medium = scene.get("medium")
+        if isinstance(medium, dict) and medium.get("kind") == "grid-file" and isinstance(medium.get("path"), str):
+            medium["path"] = str(Path(folder) / medium["path"])
+    return table

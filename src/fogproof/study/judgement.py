@@ -1,0 +1,180 @@
+"""Is an estimator right? Its mean, variance and scatter against the oracle, inside one false-alarm probability for the study.
+
+What is rejected here is out of every ranking.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fogproof.checks import Finding
+from fogproof.checks.heavy import Tail
+from fogproof.checks.means import Moments, mean_test
+from fogproof.checks.tails import gamma_above, normal_quantile, student_two_sided
+from fogproof.checks.verdict import Outcome
+from fogproof.contracts import Reference
+from fogproof.study.aggregate import Level, pooled
+from fogproof.study.cells import Cell
+
+EPS = float(np.finfo(float).eps)
+ROUNDING = 1e-12
+"""Relative difference to the reference that sums in another order may make."""
+_NEARLY_NORMAL = 0.01
+"""Excess kurtosis of a replicate's mean below which the scatter of replicates is tested by chi-square's law."""
+_SUSPICIOUS = 0.05
+"""Share of one realisation in the sum of squares that is worth a warning."""
+
+
+@dataclass(frozen=True)
+class Judged:
+    """What became of a cell; `warning` is about heavy tails, "" if there is none.
+
+    The outcome is that of all findings, but for a variance that could not be tested: squares are more skewed than what is squared.
+    """
+
+    outcome: Outcome
+    findings: tuple[Finding, ...]
+    warning: str
+
+
+def tests_of(cell: Cell) -> int:
+    """Return how many shares of the study's false-alarm probability a cell has."""
+    if cell.method.axis != "samples":
+        return 0
+    return 1 if cell.points == "sobol" else 3
+
+
+def judge(cell: Cell, levels: Sequence[Level], variance: Reference | None, alpha: float) -> Judged:
+    """Judge what was drawn of a cell; every test has the false-alarm probability alpha."""
+    value, error = float(cell.reference.value), float(cell.reference.error)
+    bad = sum(level.bad for level in levels)
+    findings: list[Finding] = []
+    warning = ""
+    if bad:
+        findings.append(Finding("finite values", "rejected", f"{bad} realisations are not finite", cause="bias"))
+    elif not any(len(level.rows) for level in levels):
+        findings.append(Finding("mean", "inconclusive", "nothing has been drawn"))
+    elif cell.method.axis != "samples":
+        findings.append(_exact(cell, levels, value, error))
+    elif cell.points == "sobol":
+        findings.append(_scrambled(levels[-1].rows[:, 1], value, resolution_of(value, error), alpha))
+    else:
+        data = pooled(np.concatenate([level.rows for level in levels]))
+        findings.append(mean_test("mean", "mean", data, value, error, alpha))
+        findings += _against_theory(levels, variance, alpha)
+        warning = _heavy(levels, data, value)
+        if warning and variance is None and "infinite" in warning:
+            findings[0] = replace(findings[0], outcome="inconclusive", message=f"{findings[0].message}; {warning}")
+    if not all(level.complete for level in levels) or len(levels) < len(cell.counts):
+        findings.append(Finding("completeness", "inconclusive", "batches are missing"))
+    outcomes = [f.outcome for f in findings if f.outcome == "rejected" or f.check != "variance"]
+    outcome: Outcome = next((o for o in ("rejected", "inconclusive") if o in outcomes), "not rejected")
+    return Judged(outcome, tuple(findings), warning)
+
+
+def _scrambled(means: np.ndarray, value: float, error: float, alpha: float) -> Finding:
+    """Judge the means of scrambled replicates: few, and far from normal where the points fit the function.
+
+    With random points the same function of uniforms is judged by many more independent values, and `inherited` counts that in; here
+    only what skewness cannot explain is rejected: Student's p-value grows by its correction at alpha.
+    """
+    data = Moments.of(means)
+    data.values = None  # no hits and misses
+    off = data.mean - value
+    if data.m2 > 0:
+        z = max(abs(off) - error, 0.0) / data.stderr
+        growth = abs(data.skewness) / (3 * math.sqrt(data.n)) * normal_quantile(alpha / 2) ** 3
+        p = min(1.0, student_two_sided(data.n - 1, z) * math.exp(min(growth, 700.0)))
+    else:
+        p = 1.0 if abs(off) <= error else 0.0
+    outcome: Outcome = "rejected" if p <= alpha else "not rejected"
+    message = f"mean of scrambled replicates {data.mean:.9g} +- {data.stderr:.2g}, reference {value:.9g}"
+    return Finding("mean", outcome, message, p, alpha, effect=off, cause="bias" if p <= alpha else "")
+
+
+def inherited(judged: Judged, twin: Judged) -> Judged:
+    """Return the judgement of Sobol points with that of random ones: where these are not right, those cannot be."""
+    if twin.outcome == "not rejected" or judged.outcome == "rejected":
+        return judged
+    finding = Finding("random points", twin.outcome, f"with random points the estimator is {twin.outcome}")
+    return Judged(twin.outcome, (*judged.findings, finding), judged.warning)
+
+
+def resolution_of(value: float, error: float, terms: int = 1) -> float:
+    """Return the error below which nobody can tell what is not random, a sum of so many terms, from the reference."""
+    return error + (ROUNDING + terms * EPS) * abs(value)
+
+
+def _exact(cell: Cell, levels: Sequence[Level], value: float, error: float) -> Finding:
+    """Judge an estimator that is not random: each value must be the reference, however many steps were made."""
+    offs = [(float(np.abs(level.rows[:, 5:7] - value).max()), level.count) for level in levels if len(level.rows)]
+    worst, count = max(offs)
+    wrong = any(not off <= resolution_of(value, error, terms) for off, terms in offs)
+    if cell.method.axis == "steps":
+        best, at = min(offs)
+        message = f"off by {worst:.3g} with {count} steps, by {best:.3g} with {at}"
+    else:
+        message = f"off by {worst:.3g} from {value:.9g}"
+    outcome: Outcome = "rejected" if wrong else "not rejected"
+    return Finding("value", outcome, message, effect=worst, cause="bias" if wrong else "")
+
+
+def _against_theory(levels: Sequence[Level], variance: Reference | None, alpha: float) -> list[Finding]:
+    """Return what the exact variance says of the spread of realisations, and of that of whole replicates."""
+    if variance is None or not np.isfinite(variance.value):
+        return []
+    squares = pooled(np.stack([level.squares for level in levels]))
+    exact, error = float(variance.value), float(variance.error)
+    what = "mean squared deviation"
+    findings = [mean_test("variance", what, squares, exact, error, alpha, "wrong variance")]
+    last, data = levels[-1], pooled(levels[-1].rows)
+    if exact > 0 and len(last.rows) and excess(data) / last.count < _NEARLY_NORMAL:
+        findings.append(_scatter(last, exact, alpha))
+    return findings
+
+
+def _scatter(level: Level, variance: float, alpha: float) -> Finding:
+    """Test that the means of replicates scatter about their own mean as independent ones do."""
+    means, freedom = level.rows[:, 1], len(level.rows) - 1
+    statistic = float(np.sum(np.square(means - means.mean()))) * level.count / variance
+    above = gamma_above(0.5 * freedom, 0.5 * statistic)
+    p = min(1.0, 2 * min(above, 1 - above))
+    ratio = math.sqrt(statistic / freedom)
+    message = f"means of {level.count} realisations scatter {ratio:.3f} times as predicted"
+    wrong = p <= alpha
+    cause = "dependence" if wrong else ""
+    return Finding(
+        "scatter of replicates", "rejected" if wrong else "not rejected", message, p, alpha, False, ratio, ratio - 1,
+        cause=cause,
+    )  # fmt: skip
+
+
+def excess(data: Moments) -> float:
+    """Return the excess kurtosis, 0 where nothing varies."""
+    return data.n * data.m4 / data.m2**2 - 3 if data.m2 > 0 else 0.0
+
+
+def _heavy(levels: Sequence[Level], data: Moments, value: float) -> str:
+    largest = _complete(levels)
+    # Hill's estimate takes a thousandth of the sample; where fewer deviations are known, it looks further out.
+    tail = Tail(value, largest, min(data.n, 1000 * (len(largest) - 1)))
+    index, spread = tail.index()
+    if tail.suspect():
+        return f"infinite variance suspected: the tail has index {index:.2g} +- {spread:.1g}, where 2 is the least"
+    if data.largest_share > _SUSPICIOUS:
+        return f"heavy tail: one realisation of {data.n} has {data.largest_share:.0%} of the variance"
+    return ""
+
+
+def _complete(levels: Sequence[Level]) -> np.ndarray:
+    """Return the largest deviations over all levels that are known whole."""
+    known = [level.tail for level in levels if len(level.tail)]
+    if len(known) < len([level for level in levels if level.count * level.replicates >= 64]):
+        return np.empty(0)
+    together = np.sort(np.concatenate(known)) if known else np.empty(0)
+    least = max((tail[0] for tail in known), default=0.0)
+    return together[together >= least]

@@ -1,0 +1,224 @@
+"""The record of a study, `results.json`, and its table, `results.csv`, with one row a count."""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import importlib.metadata
+import io
+import json
+import os
+import platform
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import fogproof
+from fogproof.checks import jsonable
+from fogproof.errors import InvalidInputError, shorten
+from fogproof.study.aggregate import levels_of
+from fogproof.study.cells import Batch, Cell
+from fogproof.study.convergence import CONFIDENCE
+from fogproof.study.files import UNITS, Study
+from fogproof.study.judgement import tests_of
+from fogproof.study.measures import Measured, measure
+from fogproof.study.ranking import ranked
+from fogproof.study.store import Store
+from fogproof.verify import SCHEMA
+
+COLUMNS = (
+    *("scene", "estimator", "points", "status", "count", "replicates", "mean", "reference", "reference_error"),
+    *("rmse", "rmse_low", "rmse_high", "predicted", "seconds_each", "variance", "exact_variance", "slope", "relative"),
+)
+
+
+@dataclass(frozen=True)
+class Circumstances:
+    """What a record says of the run and not of the estimators."""
+
+    command: str
+    started: str
+    seconds: float
+    executor: str
+    workers: int
+
+
+def make_record(
+    study: Study, cells: Sequence[Cell], batches: Sequence[Batch], store: Store, run: Circumstances
+) -> dict[str, Any]:
+    """Return the JSON-ready record of what is in the store.
+
+    "digest" sums up all that depends on the draws alone: it is the same wherever, and however often interrupted, they were made.
+    """
+    levels = levels_of(store.rows(), cells, batches)
+    alpha = study.alpha / max(1, sum(map(tests_of, cells)))
+    measured: list[Measured] = []
+    for cell in cells:  # random points stand right before their Sobol twin
+        twin = measured[-1] if cell.points == "sobol" else None
+        measured.append(measure(cell, levels[cell.index], alpha, twin))
+    scenes = [_scene(number, study, measured) for number in range(len(study.scenes))]
+    failures = [_failure(row, cells, batches) for row in store.failures()]
+    done = store.count()
+    sessions = [{"started": started, "environment": json.loads(text)} for started, text in store.sessions()]
+    answers = [
+        {"question": scene["question"], "scene": scene["name"], **{k: scene["answer"][k] for k in _ANSWER}}
+        for scene in scenes
+        if scene["question"]
+    ]
+    return jsonable(
+        {
+            "schema": SCHEMA,
+            "kind": "study",
+            "title": study.title,
+            "fogproof": importlib.metadata.version("fogproof"),
+            "environment": environment(),
+            "command": run.command,
+            "started": run.started,
+            "seconds": run.seconds,
+            "executor": run.executor,
+            "workers": run.workers,
+            "exit_code": exit_code(measured, bool(failures), done < len(batches)),
+            "fingerprint": study.fingerprint,
+            "digest": _digest(scenes),
+            "seed": study.seed,
+            "alpha": study.alpha,
+            "confidence": CONFIDENCE,
+            "settings": {
+                "samples": study.samples,
+                "replicates": study.replicates,
+                "batch": study.batch,
+                "sobol": study.sobol,
+            },
+            "batches": {"planned": len(batches), "done": done, "failed": len(failures)},
+            "cpu_seconds": sum(m.record["speed"]["cpu_total"] for m in measured if m.record["speed"]),
+            "answers": answers,
+            "scenes": scenes,
+            "failures": failures,
+            "sessions": sessions,
+            "mixed": len({json.dumps(session["environment"], sort_keys=True) for session in sessions}) > 1,
+            "history": None,
+        }
+    )
+
+
+_ANSWER = ("best", "best_random", "text")
+
+
+def exit_code(measured: Iterable[Measured], failed: bool, missing: bool) -> int:
+    """Return 1 if something was rejected that ought to be right, or failed; 3 if something is inconclusive; else 0."""
+    statuses = {m.status for m in measured}
+    if "rejected" in statuses or failed:
+        return 1
+    return 3 if "inconclusive" in statuses or missing else 0
+
+
+def _scene(number: int, study: Study, measured: Sequence[Measured]) -> dict[str, Any]:
+    scene = study.scenes[number]
+    own = [m for m in measured if m.cell.scene is scene]
+    reference = own[0].cell.reference
+    return {
+        "name": scene.name,
+        "question": scene.question,
+        "quantity": scene.quantity,
+        "unit": UNITS[scene.quantity],
+        "described": json.loads(study.text)["scenes"][number],
+        "reference": {
+            "value": float(reference.value),
+            "error": float(reference.error),
+            "method": reference.method,
+            "source": reference.source,
+        },
+        "answer": ranked(own),
+        "estimators": [m.record for m in own],
+    }
+
+
+def _digest(scenes: list[dict[str, Any]]) -> str:
+    """Return the sum of everything that no clock has touched."""
+    kept = [
+        {
+            **{key: value for key, value in scene.items() if key not in ("answer", "estimators")},
+            "estimators": [{k: v for k, v in e.items() if k != "speed"} for e in scene["estimators"]],
+        }
+        for scene in scenes
+    ]
+    return hashlib.sha256(json.dumps(jsonable(kept), sort_keys=True).encode()).hexdigest()
+
+
+def _failure(row: tuple[int, int, str], cells: Sequence[Cell], batches: Sequence[Batch]) -> dict[str, Any]:
+    index, attempts, error = row
+    batch = batches[index]
+    cell = cells[batch.cell]
+    place = {"scene": cell.scene.name, "estimator": cell.name, "count": batch.count}
+    return {"batch": index, **place, "attempts": attempts, "error": error}
+
+
+def environment() -> dict[str, Any]:
+    """Return what the draws may depend on besides the study, and the code they were made with."""
+    packages = ("numpy", "scipy", "numba")
+    versions = {package: importlib.metadata.version(package) for package in packages}
+    machine = {"machine": platform.machine(), "platform": platform.platform(terse=True), "cores": os.cpu_count()}
+    return {"python": platform.python_version(), **versions, **machine, "code": _code()}
+
+
+@cache
+def _code() -> str:
+    """Return a sum of the sources of fogproof: batches of two states of the code should not be mixed."""
+    root, words = Path(fogproof.__file__).parent, hashlib.blake2b(digest_size=10)
+    for folder in ("analytic", "estimators", "scene", "study"):
+        for file in sorted((root / folder).glob("*.py")):
+            words.update(file.name.encode() + file.read_bytes())
+    return words.hexdigest()
+
+
+def table(record: dict[str, Any]) -> str:
+    """Return `results.csv`: a row for each count of each estimator."""
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\r\n")
+    writer.writerow(COLUMNS)
+    for scene in record["scenes"]:
+        for estimator in scene["estimators"]:
+            writer.writerows(_rows(scene, estimator))
+    return out.getvalue()
+
+
+def _rows(scene: dict[str, Any], estimator: dict[str, Any]) -> Iterable[list[Any]]:
+    speed, variance = estimator["speed"], estimator["variance"] or {}
+    for number, count in enumerate(estimator["counts"]):
+        values = {
+            **count,
+            "scene": scene["name"],
+            "estimator": estimator["name"],
+            "points": estimator["points"],
+            "status": estimator["status"],
+            "reference": scene["reference"]["value"],
+            "reference_error": scene["reference"]["error"],
+            "seconds_each": speed["counts"][number]["value"],
+            "variance": variance.get("measured"),
+            "exact_variance": variance.get("exact"),
+            "slope": (estimator["slope"] or {}).get("value"),
+            "relative": (speed["relative"] or {}).get("value"),
+        }
+        yield ["" if values[name] is None else _cell(values[name]) for name in COLUMNS]
+
+
+def _cell(value: Any) -> Any:
+    """A text that a spreadsheet would take for a formula gets an apostrophe in front."""
+    return f"'{value}" if isinstance(value, str) and value.startswith(("=", "+", "-", "@", "\t")) else value
+
+
+def read_results(path: Path) -> dict[str, Any]:
+    """Return the record of a finished study, from its folder or file."""
+    file = path / "results.json" if path.is_dir() else path
+    try:
+        record = json.loads(file.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InvalidInputError(f"cannot read {file}: {error.strerror or error}", str(file)) from None
+    except (ValueError, RecursionError) as error:
+        raise InvalidInputError(f"cannot read {file}: it is not JSON ({error})", str(file)) from None
+    if not isinstance(record, dict) or record.get("schema") != SCHEMA or record.get("kind") != "study":
+        got = record.get("kind") if isinstance(record, dict) else record
+        raise InvalidInputError(f"{file} is not the record of a study of {SCHEMA!r}, got {shorten(got)}", str(file))
+    return record

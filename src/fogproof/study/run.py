@@ -1,0 +1,131 @@
+"""Drawing what is missing: batches out to the workers, results into the store, until all are there or somebody says stop."""
+
+from __future__ import annotations
+
+import concurrent.futures
+from collections import deque
+from collections.abc import Callable, Sequence
+from concurrent.futures import BrokenExecutor, CancelledError, Future
+from dataclasses import dataclass, field
+
+from fogproof.study.batches import BatchResult, run_batch
+from fogproof.study.cells import Batch, Cell
+from fogproof.study.executors import ClusterError, Crew
+from fogproof.study.files import Study
+from fogproof.study.store import Store
+
+ATTEMPTS = 3
+"""A batch that has failed so often is given up for this run, and reported."""
+AHEAD = 2
+"""Batches a worker has waiting, beside the one it draws."""
+
+Draw = Callable[[str, str, Batch, float], BatchResult]
+Advance = Callable[[Batch, "BatchResult | None"], None]
+
+
+@dataclass
+class _Work:
+    """What is to be drawn: `waiting` in any number, `suspects` one at a time with nobody else at work."""
+
+    waiting: deque[Batch]
+    suspects: deque[Batch] = field(default_factory=deque)
+    running: dict[Future[BatchResult], Batch] = field(default_factory=dict)
+    failed: dict[int, int] = field(default_factory=dict)
+
+    def next(self, slots: int) -> Batch | None:
+        """Return the next batch to hand out, None if the workers have enough."""
+        if self.waiting and len(self.running) < slots * (1 + AHEAD) and not self.suspects:
+            return self.waiting.popleft()
+        if self.suspects and not self.running:
+            return self.suspects.popleft()
+        return None
+
+
+def draw_missing(
+    study: Study,
+    cells: Sequence[Cell],
+    batches: Sequence[Batch],
+    store: Store,
+    crew: Crew,
+    advance: Advance = lambda batch, result: None,
+    draw: Draw = run_batch,
+) -> None:
+    """Draw every batch that is not in the store yet.
+
+    On KeyboardInterrupt no more is handed out, what is under way is still stored, and the interrupt goes on.
+
+    advance  told of each batch, with its result or None if it was given up
+    draw     what a worker calls
+    """
+    done = store.done()
+    work = _Work(deque(batch for batch in batches if batch.index not in done))
+    try:
+        while work.waiting or work.suspects or work.running:
+            while (batch := work.next(crew.slots)) is not None:
+                _hand_out(study, cells, batch, crew, work, draw)
+            ready, _ = concurrent.futures.wait(work.running, return_when=concurrent.futures.FIRST_COMPLETED)
+            _collect(ready, work, store, crew, advance)
+    except KeyboardInterrupt:
+        _keep_what_is_under_way(work, store)
+        raise
+
+
+def _hand_out(study: Study, cells: Sequence[Cell], batch: Batch, crew: Crew, work: _Work, draw: Draw) -> None:
+    reference = float(cells[batch.cell].reference.value)
+    try:
+        future = crew.executor.submit(draw, study.text, study.folder, batch, reference)
+    except BrokenExecutor:  # it broke while nobody was looking
+        crew.restart()
+        future = crew.executor.submit(draw, study.text, study.folder, batch, reference)
+    work.running[future] = batch
+
+
+def _collect(ready: set[Future[BatchResult]], work: _Work, store: Store, crew: Crew, advance: Advance) -> None:
+    """Store what is ready; see to what has failed."""
+    good, broken = [], []
+    for future in ready:
+        batch = work.running.pop(future)
+        try:
+            good.append((batch, future.result()))
+        except BrokenExecutor:
+            broken.append(batch)
+        except CancelledError:  # not by us: a Dask scheduler does that when it ends
+            raise ClusterError("the cluster was lost; what was drawn is kept: give the same command again") from None
+        except Exception as error:  # whatever a batch does, the others go on
+            _again(batch, f"{type(error).__name__}: {error}", work, store, advance)
+    if good:
+        store.add([result for _, result in good])
+        for batch, result in good:
+            advance(batch, result)
+    if broken:
+        _after_a_death(broken, work, store, crew, advance)
+
+
+def _after_a_death(broken: list[Batch], work: _Work, store: Store, crew: Crew, advance: Advance) -> None:
+    """A worker has died, and nobody knows which batch did it: each is drawn again alone, where a second death would tell."""
+    alone = len(broken) == 1 and not work.running
+    broken += work.running.values()
+    work.running.clear()
+    crew.restart()
+    for batch in broken:
+        if alone:
+            _again(batch, "the worker that drew it died", work, store, advance)
+        else:
+            work.suspects.append(batch)
+
+
+def _again(batch: Batch, error: str, work: _Work, store: Store, advance: Advance) -> None:
+    attempts = work.failed[batch.index] = work.failed.get(batch.index, 0) + 1
+    if attempts < ATTEMPTS:
+        work.suspects.append(batch)
+    else:
+        store.fail(batch.index, attempts, error)
+        advance(batch, None)
+
+
+def _keep_what_is_under_way(work: _Work, store: Store) -> None:
+    """Store the batches that were being drawn; those that only waited are drawn another time."""
+    under_way = [future for future in work.running if not future.cancel()]
+    finished, _ = concurrent.futures.wait(under_way)
+    results = [future.result() for future in finished if not future.cancelled() and future.exception() is None]
+    store.add(results)

@@ -1,0 +1,215 @@
+"""The statistics of a study are the same bits whoever draws it, in whatever order, and however often it is killed."""
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+from study_fixtures import HOW, LIT, SMALL, drawn, kinds, study_from, toml
+
+from fogproof.study import read_study, run_study
+from fogproof.study.batches import run_batch
+from fogproof.study.cells import batches_of, cells_of
+from fogproof.study.executors import crew
+from fogproof.study.record import make_record
+from fogproof.study.run import ATTEMPTS, draw_missing
+from fogproof.study.store import FILE, opened
+
+STUDY = study_from(SMALL)
+COMMAND = [sys.executable, "-c", "from fogproof.cli import main; main()", "study"]
+
+
+@pytest.fixture(scope="module")
+def undisturbed(tmp_path_factory):
+    return drawn(STUDY, tmp_path_factory.mktemp("whole"), workers=1)["digest"]
+
+
+def test_threads_give_the_same_bits(tmp_path, undisturbed):
+    assert drawn(STUDY, tmp_path, workers=5)["digest"] == undisturbed
+
+
+def test_the_order_of_batches_does_not_matter(tmp_path, undisturbed):
+    cells, batches = cells_of(STUDY), batches_of(cells_of(STUDY))
+    shuffled = random.sample(batches, len(batches))
+    with opened(tmp_path, STUDY) as store:
+        with crew("threads", 2) as hands:
+            draw_missing(STUDY, cells, shuffled, store, hands)
+        assert make_record(STUDY, cells, batches, store, HOW)["digest"] == undisturbed
+
+
+def test_processes_give_the_same_bits_and_survive_a_death(tmp_path, undisturbed):
+    """One batch kills the worker that draws it, the first time; another one always does."""
+    once, always = 20, 33
+    study, cells, batches = STUDY, cells_of(STUDY), batches_of(cells_of(STUDY))
+    os.environ["STUDY_TEST_FOLDER"] = str(tmp_path)
+    with opened(tmp_path / "run", study) as store, crew("processes", 1) as hands:
+        told = []
+        draw_missing(
+            study, cells, batches, store, hands, lambda batch, result: told.append((batch.index, result is None)),
+            _deadly(once, always),
+        )  # fmt: skip
+        assert (always, True) in told
+        assert [f[:2] for f in store.failures()] == [(always, ATTEMPTS)]
+        assert "died" in store.failures()[0][2]
+        record = make_record(study, cells, batches, store, HOW)
+        assert record["exit_code"] == 1
+        assert record["batches"] == {"planned": len(batches), "done": len(batches) - 1, "failed": 1}
+        victim = cells[batches[always].cell]
+        e = next(
+            e
+            for s in record["scenes"]
+            for e in s["estimators"]
+            if s["name"] == victim.scene.name and e["name"] == victim.name
+        )
+        assert e["outcome"] == "inconclusive"
+        draw_missing(study, cells, batches, store, hands)  # the next run tries it again
+        assert store.failures() == []
+        assert make_record(study, cells, batches, store, HOW)["digest"] == undisturbed
+
+
+class _deadly:  # noqa: N801 - a function that can be pickled
+    def __init__(self, once, always):
+        self.once, self.always = once, always
+
+    def __call__(self, text, folder, batch, reference):
+        marker = os.path.join(os.environ["STUDY_TEST_FOLDER"], "dead")
+        if batch.index == self.always or (batch.index == self.once and not os.path.exists(marker)):
+            open(marker, "w").close()
+            os.kill(os.getpid(), signal.SIGKILL)
+        return run_batch(text, folder, batch, reference)
+
+
+def test_a_poisoned_batch_costs_no_other(tmp_path, undisturbed):
+    def poisoned(text, folder, batch, reference):
+        if batch.index == 7:
+            raise RuntimeError("no good")
+        return run_batch(text, folder, batch, reference)
+
+    record = drawn(STUDY, tmp_path, draw=poisoned)
+    assert [(f["batch"], f["attempts"], f["error"]) for f in record["failures"]] == [
+        (7, ATTEMPTS, "RuntimeError: no good")
+    ]
+    assert record["batches"]["done"] == record["batches"]["planned"] - 1
+    assert drawn(STUDY, tmp_path)["digest"] == undisturbed
+
+
+def test_a_worker_that_fails_once_is_asked_again(tmp_path, undisturbed):
+    failed = set()
+
+    def moody(text, folder, batch, reference):
+        if batch.index % 5 == 0 and batch.index not in failed:
+            failed.add(batch.index)
+            raise OSError("not now")
+        return run_batch(text, folder, batch, reference)
+
+    record = drawn(STUDY, tmp_path, draw=moody)
+    assert len(failed) > 10
+    assert record["failures"] == []
+    assert record["digest"] == undisturbed
+
+
+def interrupted_after(n):
+    """Return what raises KeyboardInterrupt when n batches have been told of."""
+    told = []
+
+    def advance(batch, result):
+        told.append(batch.index)
+        if len(told) == n:
+            raise KeyboardInterrupt
+
+    return advance
+
+
+def test_an_interrupt_keeps_what_is_under_way(tmp_path, undisturbed):
+    cells, batches = cells_of(STUDY), batches_of(cells_of(STUDY))
+    done = 0
+    for n in (1, 17, 60):
+        with opened(tmp_path, STUDY) as store, crew("threads", 2) as hands:
+            with pytest.raises(KeyboardInterrupt):
+                draw_missing(STUDY, cells, batches, store, hands, interrupted_after(n))
+            assert len(store.done()) >= done + n
+            done = len(store.done())
+    assert done < len(batches)
+    assert drawn(STUDY, tmp_path)["digest"] == undisturbed
+
+
+KILLER = """
+import os, signal, sys
+from fogproof.study import read_study, run_study
+from fogproof.study.store import Store
+left = [int(sys.argv[3])]
+add = Store.add
+def deadly(self, results):
+    results = list(results)
+    def dying():
+        for result in results:
+            left[0] -= 1
+            if left[0] == 0:
+                os.kill(os.getpid(), signal.SIGKILL)  # in the middle of a transaction
+            yield result
+    add(self, dying())
+Store.add = deadly
+run_study(read_study(sys.argv[1]), sys.argv[2])
+"""
+
+
+def test_killed_in_the_middle_of_a_transaction(tmp_path, undisturbed):
+    """No batch that was stored before is lost, and the end is the same."""
+    file, run = tmp_path / "study.toml", tmp_path / "run"
+    file.write_text(toml(SMALL))
+    study = read_study(file)
+    kept = 0
+    for _ in range(3):
+        moment = random.randint(3, 40)
+        print("killed at batch", moment)
+        out = subprocess.run([sys.executable, "-c", KILLER, str(file), str(run), str(moment)], timeout=300)
+        assert out.returncode == -signal.SIGKILL
+        with opened(run, study) as store:
+            now = len(store.done())
+        # Batches arrive in handfuls, one transaction each: at most the last handful is lost.
+        assert kept <= now <= kept + moment
+        kept = now
+    assert kept > 0
+    assert run_study(study, run)["digest"] == undisturbed
+
+
+LONG = {**SMALL, "samples": [1000, 10_000_000], "scenes": [{**LIT, "estimators": kinds("airlight")}], "batch": 10_000}
+
+
+def test_ctrl_c_ends_cleanly_and_says_how_to_go_on(tmp_path):
+    file, run = tmp_path / "study.toml", tmp_path / "run"
+    file.write_text(toml(LONG))
+    process = subprocess.Popen([*COMMAND, str(file), "-o", str(run)], stderr=subprocess.PIPE, text=True)
+    log = run / f"{FILE}-wal"
+    while process.poll() is None and not (log.exists() and log.stat().st_size > 200_000):
+        time.sleep(0.02)
+    process.send_signal(signal.SIGINT)
+    _, said = process.communicate(timeout=300)
+    assert process.returncode == 130, said
+    assert said.count("\n") == 1
+    assert "what was drawn is kept, go on with: fogproof study" in said
+    with opened(run, read_study(file)) as store:
+        assert len(store.done()) > 20
+        assert not list(store.failures())
+
+
+def test_a_finished_study_only_counts(tmp_path, undisturbed):
+    drawn(STUDY, tmp_path)
+
+    def never(*_):
+        raise AssertionError("nothing is missing")
+
+    assert drawn(STUDY, tmp_path, draw=never)["digest"] == undisturbed
+
+
+def test_batches_are_drawn_again_alike():
+    cells = cells_of(STUDY)
+    for batch in batches_of(cells)[::9]:
+        reference = float(cells[batch.cell].reference.value)
+        one, two = (run_batch(STUDY.text, STUDY.folder, batch, reference) for _ in range(2))
+        assert np.array_equal(one.moments, two.moments)
+        assert np.array_equal(one.tail, two.tail)

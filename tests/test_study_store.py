@@ -1,0 +1,200 @@
+"""What has been stored survives: a file that is not ours is never touched, one that is damaged is never trusted, and every fault
+of disk or user ends in a sentence from which the study can go on."""
+
+import os
+import resource
+import shutil
+import sqlite3
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import pytest
+from study_fixtures import SMALL, drawn, study_from, toml
+
+from fogproof.checks import within
+from fogproof.study import StoreError
+from fogproof.study.cells import batches_of, cells_of
+from fogproof.study.executors import crew
+from fogproof.study.run import draw_missing
+from fogproof.study.store import FILE, opened
+
+STUDY = study_from({**SMALL, "scenes": SMALL["scenes"][:1]})
+
+
+@pytest.fixture(scope="module")
+def undisturbed(tmp_path_factory):
+    return drawn(STUDY, tmp_path_factory.mktemp("whole"))["digest"]
+
+
+def tampered(path, *statements):
+    connection = sqlite3.connect(path)
+    for statement in statements:
+        connection.execute(statement)
+    connection.commit()
+    connection.close()
+
+
+FOREIGN = {
+    "another program's": ["create table mine (x)", "insert into mine values (1)"],
+    "another program's, signed": ["pragma application_id = 77", "create table mine (x)"],
+    "empty but versioned": ["pragma user_version = 3"],
+}
+
+
+@pytest.mark.parametrize("statements", FOREIGN.values(), ids=FOREIGN)
+def test_a_foreign_database_is_left_alone(tmp_path, statements):
+    tampered(tmp_path / FILE, *statements)
+    before = (tmp_path / FILE).read_bytes()
+    with pytest.raises(StoreError, match="another program; it was left as it is"), opened(tmp_path, STUDY):
+        pass
+    assert (tmp_path / FILE).read_bytes() == before
+
+
+def test_what_is_no_database_is_left_alone(tmp_path):
+    (tmp_path / FILE).write_text("dear diary, " * 400)
+    with pytest.raises(StoreError, match="is not an SQLite file; it was left as it is"), opened(tmp_path, STUDY):
+        pass
+    assert (tmp_path / FILE).read_text().startswith("dear diary")
+
+
+@pytest.mark.parametrize(("version", "word"), [(99, "a newer fogproof"), (0, "an older fogproof")])
+def test_another_version_is_refused(tmp_path, version, word):
+    drawn(STUDY, tmp_path)
+    tampered(tmp_path / FILE, f"pragma user_version = {version}")
+    with pytest.raises(StoreError, match=f"has version {version} of the store.*{word}"), opened(tmp_path, STUDY):
+        pass
+
+
+def test_a_changed_study_is_refused_with_the_difference(tmp_path):
+    drawn(STUDY, tmp_path)
+    other = study_from({**SMALL, "scenes": SMALL["scenes"][:1], "samples": [64, 512, 8192]})
+    with pytest.raises(StoreError, match=r"samples: \[64, 512, 4096\] has become \[64, 512, 8192\]"):
+        drawn(other, tmp_path)
+
+
+def test_an_empty_file_is_a_beginning(tmp_path, undisturbed):
+    (tmp_path / FILE).touch()
+    assert drawn(STUDY, tmp_path)["digest"] == undisturbed
+
+
+def cut_short(path):
+    data = path.read_bytes()
+    path.write_bytes(data[: len(data) * 2 // 3 // 4096 * 4096])
+
+
+def torn(path):
+    data = bytearray(path.read_bytes())
+    data[4096 * 8 : 4096 * 9] = bytes(4096)
+    path.write_bytes(bytes(data))
+
+
+def changed_bits(path):
+    connection = sqlite3.connect(path)
+    (blob,) = connection.execute("select moments from batches where id = 3").fetchone()
+    blob = blob[:20] + bytes([blob[20] ^ 1]) + blob[21:]
+    connection.execute("update batches set moments = ? where id = 3", (blob,))
+    connection.commit()
+    connection.close()
+
+
+def without_tables(path):
+    tampered(path, "drop table failures")
+
+
+@pytest.mark.parametrize("damage", [cut_short, torn, changed_bits, without_tables], ids=lambda f: f.__name__)
+def test_a_damaged_store_is_put_aside_and_salvaged(tmp_path, undisturbed, damage):
+    drawn(STUDY, tmp_path)
+    damage(tmp_path / FILE)
+    with pytest.raises(StoreError, match=r"(?s)is damaged.*--salvage"):
+        drawn(STUDY, tmp_path)
+    with opened(tmp_path, STUDY, salvage=True) as store:
+        kept = len(store.done())
+    assert kept < len(batches_of(cells_of(STUDY))) or damage is without_tables
+    assert (tmp_path / f"{FILE}.damaged-1").exists()
+    assert drawn(STUDY, tmp_path)["digest"] == undisturbed
+
+
+def test_salvaging_finds_most_of_a_torn_file(tmp_path):
+    drawn(STUDY, tmp_path)
+    torn(tmp_path / FILE)
+    with opened(tmp_path, STUDY, salvage=True) as store:
+        assert len(store.done()) > 0
+
+
+def test_salvaging_does_not_take_what_belongs_to_another_study(tmp_path):
+    drawn(STUDY, tmp_path)
+    changed_bits(tmp_path / FILE)
+    other = study_from({**SMALL, "scenes": SMALL["scenes"][:1], "seed": 9})
+    with pytest.raises(StoreError, match="the study was changed"), opened(tmp_path, other, salvage=True):
+        pass
+    assert (tmp_path / FILE).exists()
+
+
+def test_one_process_at_a_time(tmp_path):
+    with (
+        opened(tmp_path, STUDY),
+        pytest.raises(StoreError, match="another process is working in"),
+        opened(tmp_path, STUDY),
+    ):
+        pass
+    with opened(tmp_path, STUDY) as store:
+        assert store.done() == set()
+
+
+def test_a_full_disk_keeps_what_is_there(tmp_path, undisturbed):
+    cells, batches = cells_of(STUDY), batches_of(cells_of(STUDY))
+    with opened(tmp_path, STUDY) as store, crew("threads", 1) as hands:
+        store._connection.execute("pragma max_page_count = 12")
+        with pytest.raises(StoreError, match=r"no room left .* is kept; make room and give the same command again"):
+            draw_missing(STUDY, cells, batches, store, hands)
+    with opened(tmp_path, STUDY) as store:
+        assert 0 < len(store.done()) < len(batches)
+    assert drawn(STUDY, tmp_path)["digest"] == undisturbed
+
+
+def test_a_file_that_may_not_grow_ends_in_a_sentence(tmp_path):
+    (tmp_path / "study.toml").write_text(toml(SMALL))
+    out = subprocess.run(
+        [sys.executable, "-c", "from fogproof.cli import main; main()", "study", str(tmp_path / "study.toml"),
+         "-o", str(tmp_path / "run")],
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (60_000, 60_000)),
+        capture_output=True, text=True, timeout=300,
+    )  # fmt: skip
+    assert out.returncode == 2, out.stderr
+    assert out.stderr.startswith("fogproof: ")
+    assert "is kept" in out.stderr
+    assert "Traceback" not in out.stderr
+
+
+@pytest.mark.parametrize("started", [False, True], ids=["new", "started"])
+def test_a_read_only_folder_is_told(started):
+    folder = Path(tempfile.mkdtemp())
+    try:
+        if started:
+            drawn(STUDY, folder)
+            (folder / FILE).chmod(0o444)
+        folder.chmod(0o555)
+
+        def opens():
+            if os.getuid() == 0:
+                os.setuid(65534)  # root may write anywhere
+            try:
+                with opened(folder, STUDY):
+                    return "opened"
+            except StoreError as error:
+                return str(error)
+
+        said = within(120, opens)
+        assert "no permission to write" in said
+        assert "make the folder writable, or choose another with -o" in said
+    finally:
+        folder.chmod(0o755)
+        shutil.rmtree(folder)
+
+
+def test_a_folder_that_cannot_be_made_is_told(tmp_path):
+    (tmp_path / "file").touch()
+    with pytest.raises(StoreError, match="cannot make the folder"), opened(tmp_path / "file" / "run", STUDY):
+        pass
