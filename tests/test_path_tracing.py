@@ -234,6 +234,24 @@ def test_from_within_glass_the_boundary_is_a_mirror():
     accept(tracer, rows(1 - radius + turned))
 
 
+@pytest.mark.parametrize(
+    ("shape", "ray", "passes"),
+    [
+        (BOX, Ray((0.5, 3.0, 3.0), (0, 0, -1)), True),
+        (BOX, Ray((0.5, 1.0 + 1e-9, 3.0), (0, 0, -1)), True),
+        (BOX, Ray((0.5, 1.0 - 1e-9, 3.0), (0, 0, -1)), False),
+        (SLAB, Ray((0, 0, 1e-9), (1, 0, 0)), True),
+        (SLAB, Ray((0, 0, -1e-9), (1, 0, 0)), False),
+        (BALL, Ray((1.0 + 1e-9, 0, 3), (0, 0, -1)), True),
+        (HalfSpace((0, 0, 0), UP), Ray((0, 0, 1), (0.6, 0, 0.8)), True),
+        (HalfSpace((0, 0, 0), UP), Ray((0, 0, 1), (0.6, 0, -0.8)), False),
+    ],
+)
+def test_rays_beside_the_medium_pass_it_and_rays_within_do_not(shape, ray, passes):
+    tracer = PathTracer(Medium(1e3, 0.0), shape, ray, SKY)
+    assert set(tracer.draw(np.random.default_rng(1), 100).value) == {float(passes)}
+
+
 @pytest.mark.parametrize("name", SLABS)
 def test_exact_solutions(name):
     accept(*SLABS[name]())
