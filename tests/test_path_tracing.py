@@ -398,13 +398,21 @@ def reach(x):
     return np.sqrt(2 * x.var(ddof=1) * log / len(x)) + 7 * log / (3 * (len(x) - 1))
 
 
+def test_survivors_of_the_roulette_weigh_that_much_more():
+    tracer = PathTracer(unit(), BALL, ASIDE, SKY, gathering="met", roulette=Roulette(1, 0.5))
+    value, _, scatterings, _ = tracer.paths(np.random.default_rng(5), 5000)
+    left = value[:, 0] > 0
+    assert np.array_equal(value[left, 0], 2.0 ** scatterings[left])
+    assert 0 < left.mean() < 1
+
+
 def test_what_is_cut_is_told():
     tracer = PathTracer(unit(), Ball((0, 0, 0), 3.0), ASIDE, SKY, gathering="met", roulette=None, events=5)
     paths = tracer.paths(np.random.default_rng(5), 20_000)
     assert set(np.unique(paths.cut)) == {0.0, 1.0}
     # Cut paths would have seen the furnace's 1 as well: value and cut make it whole.
     assert np.all(paths.value[:, 0] + paths.cut == 1)
-    assert np.all(paths.scatterings <= 5)
+    assert paths.scatterings.max() == 5
 
 
 def test_batches_do_not_prefer_short_paths():
