@@ -166,6 +166,8 @@ def test_any_furnace(shape, surface, index, eye, direction, albedo, g):
     assert np.abs(paths.value[:, 0] + paths.cut - 1).max() <= 1e-12
 
 
+SUN, LAMP = DirectionalLight((0, 0, -1), 1.0), PointLight((0, 2, 0), 1.0)
+BLUE = Medium(0.1, 0.9, Rayleigh())
 SLABS = {
     "met": lambda: (PathTracer(FOG, SLAB, ABOVE, SKY, BLACK, "met"), slab_reflectance(0.9, 1.0, 0.5)),
     "no roulette": lambda: (
@@ -207,6 +209,14 @@ SLABS = {
         PathTracer(FOG, Unbounded(), Ray((0, 0, -2), UP), PointLight((0.6, -0.8, 0.5), 3.0), deepest=1),
         single_scattering(FOG, Ray((0, 0, -2), UP), PointLight((0.6, -0.8, 0.5), 3.0)),
     ),
+    "once, Rayleigh": lambda: (
+        PathTracer(BLUE, SLAB, ABOVE, SUN, deepest=1),
+        single_scattering(BLUE, ABOVE, SUN, shape=SLAB),
+    ),
+    "once, forward": lambda: (
+        PathTracer(unit(HenyeyGreenstein(0.7)), BALL, ASIDE, LAMP, deepest=1),
+        single_scattering(unit(HenyeyGreenstein(0.7)), ASIDE, LAMP, shape=BALL),
+    ),
 }  # fmt: skip
 
 
@@ -222,6 +232,24 @@ def test_from_within_glass_the_boundary_is_a_mirror():
     back, radius = ((4.0 - 1) / (4 + 1)) ** 2, np.exp(-1.0)
     turned = back * radius * (1 - radius**2) / (1 - back * radius**2)
     accept(tracer, rows(1 - radius + turned))
+
+
+@pytest.mark.parametrize(
+    ("shape", "ray", "passes"),
+    [
+        (BOX, Ray((0.5, 3.0, 3.0), (0, 0, -1)), True),
+        (BOX, Ray((0.5, 1.0 + 1e-9, 3.0), (0, 0, -1)), True),
+        (BOX, Ray((0.5, 1.0 - 1e-9, 3.0), (0, 0, -1)), False),
+        (SLAB, Ray((0, 0, 1e-9), (1, 0, 0)), True),
+        (SLAB, Ray((0, 0, -1e-9), (1, 0, 0)), False),
+        (BALL, Ray((1.0 + 1e-9, 0, 3), (0, 0, -1)), True),
+        (HalfSpace((0, 0, 0), UP), Ray((0, 0, 1), (0.6, 0, 0.8)), True),
+        (HalfSpace((0, 0, 0), UP), Ray((0, 0, 1), (0.6, 0, -0.8)), False),
+    ],
+)
+def test_rays_beside_the_medium_pass_it_and_rays_within_do_not(shape, ray, passes):
+    tracer = PathTracer(Medium(1e3, 0.0), shape, ray, SKY)
+    assert set(tracer.draw(np.random.default_rng(1), 100).value) == {float(passes)}
 
 
 @pytest.mark.parametrize("name", SLABS)
@@ -273,9 +301,10 @@ def test_colours(name):
     accept(*SPECTRAL[name](), 400_000)
 
 
+@pytest.mark.parametrize("surface", [None, Surface(Sphere((0, 0, 0), 0.5), 0.4, "lambert", 0.6)])
 @pytest.mark.parametrize("medium", [Medium(0.0, (0.1, 1.0, 30.0)), voxels((3,))])
-def test_the_channels_of_a_path_in_a_white_furnace_have_one_as_their_mean(medium):
-    tracer = SpectralPathTracer(medium, BALL, ASIDE, SKY, gathering="met", roulette=None)
+def test_the_channels_of_a_path_in_a_white_furnace_have_one_as_their_mean(medium, surface):
+    tracer = SpectralPathTracer(medium, BALL, ASIDE, SKY, surface, "met", roulette=None)
     value = tracer.draw(np.random.default_rng(2), 20_000).value
     assert np.abs(value.mean(axis=1) - 1).max() <= 1e-12
     assert value.min() >= 0
@@ -369,13 +398,21 @@ def reach(x):
     return np.sqrt(2 * x.var(ddof=1) * log / len(x)) + 7 * log / (3 * (len(x) - 1))
 
 
+def test_survivors_of_the_roulette_weigh_that_much_more():
+    tracer = PathTracer(unit(), BALL, ASIDE, SKY, gathering="met", roulette=Roulette(1, 0.5))
+    value, _, scatterings, _ = tracer.paths(np.random.default_rng(5), 5000)
+    left = value[:, 0] > 0
+    assert np.array_equal(value[left, 0], 2.0 ** scatterings[left])
+    assert 0 < left.mean() < 1
+
+
 def test_what_is_cut_is_told():
     tracer = PathTracer(unit(), Ball((0, 0, 0), 3.0), ASIDE, SKY, gathering="met", roulette=None, events=5)
     paths = tracer.paths(np.random.default_rng(5), 20_000)
     assert set(np.unique(paths.cut)) == {0.0, 1.0}
     # Cut paths would have seen the furnace's 1 as well: value and cut make it whole.
     assert np.all(paths.value[:, 0] + paths.cut == 1)
-    assert np.all(paths.scatterings <= 5)
+    assert paths.scatterings.max() == 5
 
 
 def test_batches_do_not_prefer_short_paths():
@@ -470,7 +507,6 @@ def test_scatterings_in_voxels():
     accept(ScatteringsUnderUniformSky(grid, BOX), mean_scatterings(BOX, float(grid.sigma_t.mean())))
 
 
-SUN, LAMP = DirectionalLight((0, 0, -1), 1.0), PointLight((0, 2, 0), 1.0)
 MIRROR = Surface(Plane((0, 0, -2), UP), 0.5, "mirror")
 
 

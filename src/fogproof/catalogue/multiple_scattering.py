@@ -353,7 +353,7 @@ def _boundaries() -> list[EstimatorCase]:
 def _bodies() -> list[EstimatorCase]:
     peaked, mild = Medium(0.0, 3.0, HenyeyGreenstein(0.99)), Medium(0.5, 2.0, HenyeyGreenstein(-0.4), emission=2.0)
     core = Surface(Sphere((0.2, 0.0, 0.0), 0.4), 0.3, radiance=1.4)
-    lamp = PointLight((0.0, 2.0, 0.5), 3.0)
+    lamp, blue = PointLight((0.0, 2.0, 0.5), 3.0), Medium(0.1, 0.9, Rayleigh())
     glass = Medium(0.5, 2.0, emission=2.0)
     return [
         _case(
@@ -384,12 +384,12 @@ def _bodies() -> list[EstimatorCase]:
         ),
         _case(
             "ball/lamp",
-            "Ball lit by a point light outside, scattered once",
-            lambda: PathTracer(FOG, BALL, ASIDE, lamp, deepest=1),
-            lambda: analytic.single_scattering(FOG, ASIDE, lamp, shape=BALL),
+            "Ball of Rayleigh scattering lit by a point light outside, scattered once",
+            lambda: PathTracer(blue, BALL, ASIDE, lamp, deepest=1),
+            lambda: analytic.single_scattering(blue, ASIDE, lamp, shape=BALL),
             "single_scattering",
             "extinction outside the medium: shadow rays are attenuated all the way to the light",
-            lambda: LiteralPaths(FOG, BALL, ASIDE, lamp, looked_for=True, met=False, deepest=1, all_the_way=True),
+            lambda: LiteralPaths(blue, BALL, ASIDE, lamp, looked_for=True, met=False, deepest=1, all_the_way=True),
             source=_LOOKING,
         ),
         _case(
