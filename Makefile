@@ -5,7 +5,7 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help verify test lint format calibrate oracle-hard golden bench clean
+.PHONY: help verify test lint format calibrate oracle-hard study kill-study golden bench clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -35,11 +35,17 @@ oracle-hard: $(VENV)/.installed-test  ## the airlight integral on 10^5 hard case
 bench: $(VENV)/.installed-test  ## benchmarks, as ratios of interleaved runs
 	@for script in benchmarks/*.py; do echo "== $$script"; $(BIN)/python $$script || exit 1; done
 
+study: $(VENV)/.installed  ## the lecture's estimators, speed against error; resumable, lands in runs/lecture
+	$(BIN)/fogproof study studies/lecture.toml -o runs/lecture
+
+kill-study: $(VENV)/.installed  ## kill a study at 20 random moments; nothing may be lost, and no bit may differ
+	$(BIN)/python tools/kill_study.py
+
 golden: $(VENV)/.installed-test  ## prove the golden tables again, by ball arithmetic
 	$(BIN)/python tools/make_golden.py --check
 
 clean:  ## remove the environment and everything built
-	rm -rf $(VENV) build
+	rm -rf $(VENV) build runs
 
 $(VENV)/bin/python:
 	$(PYTHON) -m venv $(VENV) || { echo "python3 -m venv failed: on Debian, apt-get install python3-venv" >&2; exit 1; }

@@ -8,7 +8,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from fogproof.study.batches import BatchResult
-from fogproof.study.cells import Batch, Cell
+from fogproof.study.cells import Cell
+from fogproof.study.plan import Batch
 
 
 class Progress:
@@ -21,7 +22,7 @@ class Progress:
         self._drawn = [0.0] * len(cells)
         self._took = [0.0] * len(cells)
         for batch in batches:
-            if batch.index not in done:
+            if batch.number not in done:
                 self._left[batch.cell] += self._work(batch)
         self._total, self._count = len(batches), len(done)
         self._bar: Any = None
@@ -66,5 +67,5 @@ class Progress:
 
     def _work(self, batch: Batch) -> float:
         if self._cells[batch.cell].method.axis == "steps":
-            return float(batch.count * batch.replicates)
+            return float(batch.size * batch.replicates)
         return float(batch.samples * batch.replicates)
