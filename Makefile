@@ -45,7 +45,7 @@ golden: $(VENV)/.installed-test  ## prove the golden tables again, by ball arith
 	$(BIN)/python tools/make_golden.py --check
 
 clean:  ## remove the environment and everything built
-	rm -rf $(VENV) build runs
+	rm -rf $(VENV) build
 
 $(VENV)/bin/python:
 	$(PYTHON) -m venv $(VENV) || { echo "python3 -m venv failed: on Debian, apt-get install python3-venv" >&2; exit 1; }

@@ -17,6 +17,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -28,7 +29,7 @@ from fogproof.study.batches import BatchResult, draw_batch, moments_of
 from fogproof.study.cells import Cell, cells_of, prepare
 from fogproof.study.executors import crew
 from fogproof.study.files import Study, study_of
-from fogproof.study.plan import Batch, batches_of
+from fogproof.study.plan import Batch, Batches, batches_of
 from fogproof.study.run import draw_missing
 from fogproof.study.store import FILE, opened
 
@@ -55,8 +56,8 @@ def study_from(batch: int, replicates: int, scene: dict[str, object], estimator:
     return study_of(json.dumps(table), "/")
 
 
-def bare(cell: Cell, batches: list[Batch]) -> None:
-    """Draw the batches and throw them away."""
+def bare(cell: Cell, batches: Sequence[Batch]) -> float:
+    """Draw the batches and throw them away; return the seconds of processor it took."""
     estimator = cell.estimator(0)
 
     def draw() -> None:
@@ -64,11 +65,13 @@ def bare(cell: Cell, batches: list[Batch]) -> None:
             estimator.draw(batch_generator(1, cell.stream, batch.first, 0), batch.samples)
 
     with ThreadPoolExecutor(1) as pool:
+        started = time.process_time()
         pool.submit(draw).result()
+        return time.process_time() - started
 
 
-def whole(study: Study, cells: list[Cell], batches: list[Batch]) -> None:
-    """Draw them as a study."""
+def whole(study: Study, cells: list[Cell], batches: Batches) -> float:
+    """Draw them as a study; return the seconds of processor it took, once the store was open."""
 
     def here(text: str, folder: str, batch: Batch, reference: float) -> BatchResult:
         return draw_batch(cells[batch.cell], batch, reference)
@@ -78,7 +81,9 @@ def whole(study: Study, cells: list[Cell], batches: list[Batch]) -> None:
         opened(Path(folder), study) as store,
         crew("threads", 1) as hands,
     ):
+        started = time.process_time()
         draw_missing(study, cells, batches, store, hands, draw=here)
+        return time.process_time() - started
 
 
 def overhead(seconds: float) -> None:
@@ -95,21 +100,17 @@ def overhead(seconds: float) -> None:
     study, batches = cells[0].study, batches_of(cells)
     ratios, taken = [], []
     for _ in range(9):
-        times = []
-        for run in (lambda: bare(cells[0], batches), lambda: whole(study, cells, batches)):
-            started = time.process_time()
-            run()
-            times.append(time.process_time() - started)
+        times = bare(cells[0], batches), whole(study, cells, batches)
         ratios.append(times[1] / times[0])
         taken.append(times[0] / len(batches))
     print(f"batches of {statistics.median(taken) * 1e3:.1f} ms ({SIZE} samples), {len(batches)} of them, nine times:")
     print(
         f"  overhead {statistics.median(ratios) - 1:+.2%} (runs from {min(ratios) - 1:+.2%} to {max(ratios) - 1:+.2%})"
     )
+    study = study_from(SIZE, 400, NOISE, {"kind": "ratio"})
+    cells = cells_of(study)
     cells[0]._made[0] = Free()
-    started = time.process_time()
-    whole(study, cells, batches)
-    each = (time.process_time() - started) / len(batches)
+    each = min(whole(study, cells, batches_of(cells)) for _ in range(3)) / 400
     print(f"  all but the drawing: {each * 1e3:.2f} ms a batch, {each / 0.05:.2%} of 50 ms")
 
 
