@@ -8,7 +8,7 @@ BIN    := $(VENV)/bin
 export OPENBLAS_NUM_THREADS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help verify gallery test lint format calibrate repeat oracle-hard golden bench clean
+.PHONY: help verify gallery study test lint format calibrate repeat oracle-hard kill-study golden bench clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -43,6 +43,12 @@ oracle-hard: $(VENV)/.installed-test  ## the oracle on 10^5 hard cases against m
 
 bench: $(VENV)/.installed-test  ## benchmarks, as ratios of interleaved runs
 	@for script in benchmarks/*.py; do echo "== $$script"; $(BIN)/python $$script || exit 1; done
+
+study: $(VENV)/.installed  ## the lecture's estimators, speed against error; resumable, lands in runs/lecture
+	$(BIN)/fogproof study studies/lecture.toml -o runs/lecture
+
+kill-study: $(VENV)/.installed  ## kill a study at 20 random moments; nothing may be lost, and no bit may differ
+	$(BIN)/python tools/kill_study.py
 
 golden: $(VENV)/.installed-test  ## prove the golden tables again, by ball arithmetic
 	$(BIN)/python tools/make_golden.py --check

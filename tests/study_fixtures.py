@@ -3,9 +3,10 @@
 import json
 
 from fogproof.study.batches import draw_batch
-from fogproof.study.cells import batches_of, cells_of
+from fogproof.study.cells import cells_of
 from fogproof.study.executors import crew
 from fogproof.study.files import study_of
+from fogproof.study.plan import batches_of
 from fogproof.study.record import Circumstances, make_record
 from fogproof.study.run import draw_missing
 from fogproof.study.store import opened

@@ -28,7 +28,7 @@ TABLE = {
 def fogproof(*arguments):
     return subprocess.run(
         [sys.executable, "-c", "from fogproof.cli import main; main()", *map(str, arguments)],
-        capture_output=True, text=True, timeout=300,
+        capture_output=True, text=True, timeout=1800,
     )  # fmt: skip
 
 

@@ -9,9 +9,10 @@ from study_fixtures import SMALL, kinds, study_from, toml
 
 from fogproof.errors import FogproofError
 from fogproof.study import read_study
-from fogproof.study.cells import batches_of, cells_of, prepare
+from fogproof.study.cells import cells_of, prepare
 from fogproof.study.files import differences, study_of
 from fogproof.study.methods import METHODS, name_of
+from fogproof.study.plan import batches_of
 
 
 def changed(path, value):

@@ -13,8 +13,9 @@ from study_fixtures import HOW, LIT, SMALL, drawn, kinds, study_from, toml
 
 from fogproof.study import read_study, run_study
 from fogproof.study.batches import run_batch
-from fogproof.study.cells import batches_of, cells_of
+from fogproof.study.cells import cells_of
 from fogproof.study.executors import crew
+from fogproof.study.plan import batches_of
 from fogproof.study.record import make_record
 from fogproof.study.run import ATTEMPTS, draw_missing
 from fogproof.study.store import FILE, opened
@@ -49,7 +50,7 @@ def test_processes_give_the_same_bits_and_survive_a_death(tmp_path, undisturbed)
     with opened(tmp_path / "run", study) as store, crew("processes", 1) as hands:
         told = []
         draw_missing(
-            study, cells, batches, store, hands, lambda batch, result: told.append((batch.index, result is None)),
+            study, cells, batches, store, hands, lambda batch, result: told.append((batch.number, result is None)),
             _deadly(once, always),
         )  # fmt: skip
         assert (always, True) in told
@@ -77,7 +78,7 @@ class _deadly:  # noqa: N801 - a function that can be pickled
 
     def __call__(self, text, folder, batch, reference):
         marker = os.path.join(os.environ["STUDY_TEST_FOLDER"], "dead")
-        if batch.index == self.always or (batch.index == self.once and not os.path.exists(marker)):
+        if batch.number == self.always or (batch.number == self.once and not os.path.exists(marker)):
             open(marker, "w").close()
             os.kill(os.getpid(), signal.SIGKILL)
         return run_batch(text, folder, batch, reference)
@@ -85,7 +86,7 @@ class _deadly:  # noqa: N801 - a function that can be pickled
 
 def test_a_poisoned_batch_costs_no_other(tmp_path, undisturbed):
     def poisoned(text, folder, batch, reference):
-        if batch.index == 7:
+        if batch.number == 7:
             raise RuntimeError("no good")
         return run_batch(text, folder, batch, reference)
 
@@ -101,8 +102,8 @@ def test_a_worker_that_fails_once_is_asked_again(tmp_path, undisturbed):
     failed = set()
 
     def moody(text, folder, batch, reference):
-        if batch.index % 5 == 0 and batch.index not in failed:
-            failed.add(batch.index)
+        if batch.number % 5 == 0 and batch.number not in failed:
+            failed.add(batch.number)
             raise OSError("not now")
         return run_batch(text, folder, batch, reference)
 
@@ -117,7 +118,7 @@ def interrupted_after(n):
     told = []
 
     def advance(batch, result):
-        told.append(batch.index)
+        told.append(batch.number)
         if len(told) == n:
             raise KeyboardInterrupt
 
@@ -166,7 +167,7 @@ def test_killed_in_the_middle_of_a_transaction(tmp_path, undisturbed):
     for _ in range(3):
         moment = random.randint(3, 40)
         print("killed at batch", moment)
-        out = subprocess.run([sys.executable, "-c", KILLER, str(file), str(run), str(moment)], timeout=300)
+        out = subprocess.run([sys.executable, "-c", KILLER, str(file), str(run), str(moment)], timeout=1800)
         assert out.returncode == -signal.SIGKILL
         with opened(run, study) as store:
             now = len(store.done())
@@ -188,7 +189,7 @@ def test_ctrl_c_ends_cleanly_and_says_how_to_go_on(tmp_path):
     while process.poll() is None and not (log.exists() and log.stat().st_size > 200_000):
         time.sleep(0.02)
     process.send_signal(signal.SIGINT)
-    _, said = process.communicate(timeout=300)
+    _, said = process.communicate(timeout=1800)
     assert process.returncode == 130, said
     assert said.count("\n") == 1
     assert "what was drawn is kept, go on with: fogproof study" in said
@@ -208,7 +209,7 @@ def test_a_finished_study_only_counts(tmp_path, undisturbed):
 
 def test_batches_are_drawn_again_alike():
     cells = cells_of(STUDY)
-    for batch in batches_of(cells)[::9]:
+    for batch in list(batches_of(cells))[::9]:
         reference = float(cells[batch.cell].reference.value)
         one, two = (run_batch(STUDY.text, STUDY.folder, batch, reference) for _ in range(2))
         assert np.array_equal(one.moments, two.moments)

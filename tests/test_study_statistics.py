@@ -17,7 +17,7 @@ from fogproof.checks.tails import binomial_at_most
 from fogproof.contracts import Reference
 from fogproof.study import methods
 from fogproof.study.aggregate import Level, merged, pooled
-from fogproof.study.batches import moments_of
+from fogproof.study.batches import TAIL, TAIL_SHARE, _largest, moments_of
 from fogproof.study.cells import cells_of
 from fogproof.study.convergence import falling, rmse, slope
 from fogproof.study.history import compare
@@ -41,6 +41,17 @@ def test_moments_merge_to_those_of_the_whole(seed, parts, law):
         assert found.m2 == 0
     starts = np.arange(parts)
     assert np.array_equal(merged(rows, starts), rows)
+
+
+def test_the_largest_deviations_are_those():
+    for n in (1, 63, 64, 1000, 4096, 70_001):
+        x = np.random.default_rng().exponential(size=n)
+        kept = _largest(x)
+        assert np.array_equal(kept, np.sort(x)[n - len(kept) :])
+        assert len(kept) == min(TAIL, n // TAIL_SHARE)
+    x[::2] = np.inf
+    assert np.isfinite(_largest(x)).all()
+    assert len(_largest(x)) == TAIL
 
 
 def test_what_is_not_finite_is_counted_and_left_out():

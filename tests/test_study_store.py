@@ -15,8 +15,9 @@ from study_fixtures import SMALL, drawn, study_from, toml
 
 from fogproof.checks import within
 from fogproof.study import StoreError
-from fogproof.study.cells import batches_of, cells_of
+from fogproof.study.cells import cells_of
 from fogproof.study.executors import crew
+from fogproof.study.plan import batches_of
 from fogproof.study.run import draw_missing
 from fogproof.study.store import FILE, opened
 
@@ -160,7 +161,7 @@ def test_a_file_that_may_not_grow_ends_in_a_sentence(tmp_path):
         [sys.executable, "-c", "from fogproof.cli import main; main()", "study", str(tmp_path / "study.toml"),
          "-o", str(tmp_path / "run")],
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (60_000, 60_000)),
-        capture_output=True, text=True, timeout=300,
+        capture_output=True, text=True, timeout=1800,
     )  # fmt: skip
     assert out.returncode == 2, out.stderr
     assert out.stderr.startswith("fogproof: ")
@@ -186,7 +187,7 @@ def test_a_read_only_folder_is_told(started):
             except StoreError as error:
                 return str(error)
 
-        said = within(120, opens)
+        said = within(1800, opens)
         assert "no permission to write" in said
         assert "make the folder writable, or choose another with -o" in said
     finally:

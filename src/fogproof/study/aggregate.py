@@ -5,6 +5,7 @@ All sums run over arrays whose order is fixed, so the same batches give the same
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby, islice
@@ -13,7 +14,8 @@ import numpy as np
 
 from fogproof.checks.means import Moments
 from fogproof.study.batches import COLUMNS, TAIL_SHARE
-from fogproof.study.cells import Batch, Cell
+from fogproof.study.cells import Cell
+from fogproof.study.plan import Batches, Stretch
 from fogproof.study.store import Row
 
 _N, _MEAN, _M2, _M3, _M4, _LOW, _HIGH, _AT_LOW, _AT_HIGH, _BAD = range(len(COLUMNS))
@@ -56,21 +58,26 @@ class Level:
         return int(self.rows[:, _BAD].sum())
 
 
-def levels_of(rows: Iterable[Row], cells: Sequence[Cell], batches: Sequence[Batch]) -> list[list[Level]]:
+def levels_of(rows: Iterable[Row], cells: Sequence[Cell], batches: Batches) -> list[list[Level]]:
     """Return the levels of each cell, one for each count of which anything was drawn."""
     levels: list[list[Level]] = [[] for _ in cells]
-
-    def key(row: Row) -> tuple[int, int]:
-        return batches[row[0]].cell, batches[row[0]].level
-
-    for (cell, _), own in groupby(rows, key):
-        levels[cell].append(_level(own, cells[cell], batches))
+    begins = [stretch.begin for stretch in batches.stretches]
+    for number, own in groupby(rows, lambda row: bisect_right(begins, row[0])):
+        stretch = batches.stretches[number - 1]
+        levels[stretch.cell].append(_level(own, stretch))
     return levels
 
 
 @dataclass(frozen=True, eq=False)
 class _Handful:
-    """A number of stored batches as arrays; `least` is the largest of the smallest numbers of their tails."""
+    """A number of stored batches as arrays.
+
+    rows          (.., columns) the moments of replicates or parts of them, and `replicate` which
+    squares       (columns,) moments of (X - reference)^2
+    realisations, costs, cpu, wall  (batches,)
+    tail          the largest |X - reference| down to `least`, the largest of the batches' smallest
+    tails_known   whether every batch that keeps a tail has one
+    """
 
     rows: np.ndarray
     replicate: np.ndarray
@@ -84,30 +91,28 @@ class _Handful:
     tails_known: bool
 
 
-def _level(own: Iterator[Row], cell: Cell, batches: Sequence[Batch]) -> Level:
+def _level(own: Iterator[Row], stretch: Stretch) -> Level:
     """Return the level that some rows belong to; a handful at a time, because there may be very many."""
     parts: list[_Handful] = []
-    count = 0
     while group := list(islice(own, _AT_ONCE)):
-        count = batches[group[0][0]].count
-        parts.append(_handful(group, [batches[row[0]] for row in group]))
-    replicate = np.concatenate([part.replicate for part in parts])
-    rows = np.concatenate([part.rows for part in parts])
-    squares = np.concatenate([part.squares for part in parts])
+        parts.append(_handful(group, stretch))
+    starts = np.flatnonzero(np.diff(np.concatenate([part.replicate for part in parts]), prepend=-1))
+    squares = merged(np.stack([part.squares for part in parts]), np.array([0]))[0]
     n, costs, cpu, wall = (
         np.concatenate([getattr(part, name) for part in parts]) for name in ("realisations", "costs", "cpu", "wall")
     )
     known, least = all(part.tails_known for part in parts), max(part.least for part in parts)
-    parts_tail = np.sort(np.concatenate([part.tail for part in parts]))
+    tail = np.sort(np.concatenate([part.tail for part in parts]))
+    rows = np.concatenate([part.rows for part in parts])
     parts.clear()
-    rows = merged(rows, np.flatnonzero(np.diff(replicate, prepend=-1)))
-    wanted = count if cell.method.axis == "samples" else 1
+    rows = merged(rows, starts)
+    whole = rows[:, _N] + rows[:, _BAD] == stretch.realisations
     return Level(
-        count,
-        rows[rows[:, _N] + rows[:, _BAD] == wanted],
-        cell.replicates,
-        merged(squares, np.array([0]))[0],
-        parts_tail[np.searchsorted(parts_tail, least) :][-_TAIL_KEPT:] if known else np.empty(0),
+        stretch.size,
+        rows if whole.all() else rows[whole],
+        stretch.replicates,
+        squares,
+        tail[np.searchsorted(tail, least) :][-_TAIL_KEPT:] if known else np.empty(0),
         float(np.sum(costs * n) / n.sum()),
         cpu / n,
         wall / n,
@@ -115,15 +120,16 @@ def _level(own: Iterator[Row], cell: Cell, batches: Sequence[Batch]) -> Level:
     )
 
 
-def _handful(group: list[Row], batches: list[Batch]) -> _Handful:
+def _handful(group: list[Row], stretch: Stretch) -> _Handful:
+    pieces = stretch.pieces(np.array([row[0] for row in group]))
     table = np.frombuffer(b"".join(row[1] for row in group)).reshape(-1, len(COLUMNS))
-    sizes = np.array([batch.replicates for batch in batches])
+    sizes = pieces.replicates
     last = np.cumsum(sizes + 1) - 1  # the row of squares ends each batch
     own = np.ones(len(table), bool)
     own[last] = False
-    first = np.repeat([batch.first for batch in batches], sizes)
+    first = np.repeat(pieces.first, sizes)
     within = np.arange(len(first)) - np.repeat(np.cumsum(sizes) - sizes, sizes)
-    realisations = sizes * np.array([batch.samples for batch in batches])
+    realisations = sizes * pieces.samples
     tail = np.frombuffer(b"".join(row[2] for row in group))
     lengths = np.array([len(row[2]) // 8 for row in group])
     starts = (np.cumsum(lengths) - lengths)[lengths > 0]
@@ -134,7 +140,7 @@ def _handful(group: list[Row], batches: list[Batch]) -> _Handful:
     return _Handful(
         table[own],
         first + within,
-        table[last],
+        merged(table[last], np.array([0]))[0],
         realisations,
         np.array([np.nan if row[3] is None else row[3] for row in group]),
         np.array([row[5] for row in group]),

@@ -11,7 +11,8 @@ import numpy as np
 from fogproof.checks import batch_generator
 from fogproof.contracts import Draws
 from fogproof.errors import SubjectError
-from fogproof.study.cells import MARCHES, SOBOL_CALL, Batch, Cell, cells_of_text
+from fogproof.study.cells import MARCHES, SOBOL_CALL, Cell, cells_of_text
+from fogproof.study.plan import Batch
 from fogproof.study.sobol import SobolSequence
 
 COLUMNS = ("n", "mean", "m2", "m3", "m4", "low", "high", "at_low", "at_high", "bad")
@@ -48,7 +49,7 @@ def run_batch(text: str, folder: str, batch: Batch, reference: float) -> BatchRe
 
 def draw_batch(cell: Cell, batch: Batch, reference: float) -> BatchResult:
     """Draw a batch of a cell."""
-    estimator = cell.estimator(batch.count)
+    estimator = cell.estimator(batch.size)
     wall, cpu = time.perf_counter(), time.thread_time()
     if cell.points == "sobol":
         x, cost = _with_sobol_points(cell, estimator, batch)
@@ -57,7 +58,7 @@ def draw_batch(cell: Cell, batch: Batch, reference: float) -> BatchResult:
         draws = [_numbers(estimator.draw(rng, 1), 1) for _ in range(MARCHES)]
         x, cost = np.concatenate([values for values, _ in draws]), draws[0][1]
     else:
-        rng = batch_generator(cell.study.seed, f"{cell.stream}/{batch.count}", batch.first, batch.start)
+        rng = batch_generator(cell.study.seed, f"{cell.stream}/{batch.size}", batch.first, batch.start)
         n = batch.replicates * batch.samples
         x, cost = _numbers(estimator.draw(rng, n), n)
     cpu, wall = time.thread_time() - cpu, time.perf_counter() - wall
@@ -65,21 +66,22 @@ def draw_batch(cell: Cell, batch: Batch, reference: float) -> BatchResult:
     deviations = np.abs(x - reference)
     with np.errstate(over="ignore", invalid="ignore"):
         moments = np.concatenate([moments_of(x), moments_of(np.square(deviations).reshape(1, -1))])
-    return BatchResult(batch.index, moments, _largest(deviations.ravel()), cost, wall, cpu)
+    return BatchResult(batch.number, moments, _largest(deviations.ravel()), cost, wall, cpu)
 
 
 def moments_of(x: np.ndarray) -> np.ndarray:
     """Return rows of `COLUMNS` for each row of x (rows, n); numbers that are not finite are counted and left out."""
-    finite = np.isfinite(x)
-    if not finite.all():
-        return np.concatenate([_row_with_gaps(row[good], len(row)) for row, good in zip(x, finite, strict=True)])
-    n = np.full(len(x), float(x.shape[1]))
     low, high = x.min(axis=1), x.max(axis=1)
+    if not (np.isfinite(low).all() and np.isfinite(high).all()):
+        return np.concatenate([_row_with_gaps(row[np.isfinite(row)], len(row)) for row in x])
+    n = np.full(len(x), float(x.shape[1]))
     # Rounding must not leave a constant with a variance.
     mean = np.where(low == high, low, np.clip(x.mean(axis=1), low, high))
     d = x - mean[:, None]
     d2 = d * d
-    sums = [d2.sum(axis=1), (d2 * d).sum(axis=1), (d2 * d2).sum(axis=1)]
+    sums = [d2.sum(axis=1)]
+    for factor in (d, d2):  # in place: fresh arrays of this size cost more than the arithmetic
+        sums.append(np.multiply(factor, d2, out=factor).sum(axis=1))
     ends = [np.count_nonzero(x == end[:, None], axis=1).astype(float) for end in (low, high)]
     return np.stack([n, mean, *sums, low, high, *ends, np.zeros(len(x))], axis=1)
 
@@ -95,11 +97,19 @@ def _row_with_gaps(finite: np.ndarray, n: int) -> np.ndarray:
 
 
 def _largest(deviations: np.ndarray) -> np.ndarray:
+    """Return the largest deviations, rising.
+
+    The largest numbers of as many blocks as are kept are not below the least that is kept: whatever lies below those is left out
+    before anything is sorted.
+    """
     keep = min(TAIL, len(deviations) // TAIL_SHARE)
-    finite = deviations[np.isfinite(deviations)]
-    if keep == 0 or len(finite) <= keep:
+    if keep == 0:
         return np.empty(0)
-    return np.sort(np.partition(finite, len(finite) - keep)[-keep:])
+    whole = len(deviations) // keep * keep
+    least = deviations[:whole].reshape(keep, -1).max(axis=1).min()
+    if not np.isfinite(deviations.max()):
+        return _largest(deviations[np.isfinite(deviations)])
+    return np.sort(deviations[deviations >= least])[-keep:]
 
 
 def _numbers(result: object, n: int) -> tuple[np.ndarray, float]:
@@ -117,8 +127,8 @@ def _with_sobol_points(cell: Cell, estimator: object, batch: Batch) -> tuple[np.
     assert dimensions is not None
     values, costs = [], []
     for replicate in range(batch.first, batch.first + batch.replicates):
-        scrambling = batch_generator(cell.study.seed, f"{cell.stream}/{batch.count}", replicate, 0)
-        behind = batch_generator(cell.study.seed, f"{cell.stream}/{batch.count}", replicate, 1 + batch.start)
+        scrambling = batch_generator(cell.study.seed, f"{cell.stream}/{batch.size}", replicate, 0)
+        behind = batch_generator(cell.study.seed, f"{cell.stream}/{batch.size}", replicate, 1 + batch.start)
         sequence = SobolSequence(dimensions, scrambling, behind, batch.start)
         for start in range(0, batch.samples, SOBOL_CALL):
             n = min(SOBOL_CALL, batch.samples - start)

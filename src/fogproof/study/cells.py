@@ -1,8 +1,4 @@
-"""Cells and batches: a study taken apart into pieces that can be drawn in any order, anywhere, and come out the same.
-
-A cell is an estimator in a scene with one kind of points. A batch belongs to a cell and a count; it holds several whole replicates
-where these are small, and a part of one replicate where it is large. The list of batches follows from the study alone.
-"""
+"""The cells of a study: each an estimator in a scene with one kind of points."""
 
 from __future__ import annotations
 
@@ -28,30 +24,6 @@ MARCHES = 4
 """Realisations of each march: they are alike, but their time is measured."""
 SOBOL_CALL = 1 << 14
 """Sobol points an estimator is given at once: it works in blocks, and must see all of a block's points together."""
-
-
-@dataclass(frozen=True, slots=True)
-class Batch:
-    """A piece of work.
-
-    index       its place in the study, from 0
-    cell        index of its cell
-    level       index of its count in the cell's counts
-    count       samples a replicate has
-    first       its first replicate
-    replicates  how many replicates it holds, or a part of
-    start       where in its replicate it starts
-    samples     how many of each replicate
-    """
-
-    index: int
-    cell: int
-    level: int
-    count: int
-    first: int
-    replicates: int
-    start: int
-    samples: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,30 +119,3 @@ def prepare(cells: list[Cell]) -> None:
 def cells_of_text(text: str, folder: str) -> list[Cell]:
     """Return the cells of a study given as text, made once a process."""
     return cells_of(study_of(text, folder))
-
-
-def batches_of(cells: list[Cell]) -> list[Batch]:
-    """Return all batches, small counts first: an unfinished study knows something of every cell."""
-    batches: list[Batch] = []
-    for level in range(max(len(cell.counts) for cell in cells)):
-        for cell in cells:
-            if level < len(cell.counts):
-                count = cell.counts[level]
-                for piece in _pieces(cell, count):
-                    batches.append(Batch(len(batches), cell.index, level, count, *piece))
-    return batches
-
-
-def _pieces(cell: Cell, count: int) -> list[tuple[int, int, int, int]]:
-    """Return (first replicate, replicates, start, samples) of the batches at one count."""
-    if cell.method.axis != "samples":
-        return [(0, cell.replicates, 0, 1)]
-    size = cell.study.batch
-    if cell.points == "sobol":
-        size = 1 << (size.bit_length() - 1)  # a power of two: a stretch of Sobol points is balanced only then
-    if count <= size:
-        together = size // count
-        firsts = range(0, cell.replicates, together)
-        return [(first, min(together, cell.replicates - first), 0, count) for first in firsts]
-    starts = range(0, count, size)
-    return [(r, 1, start, min(size, count - start)) for r in range(cell.replicates) for start in starts]

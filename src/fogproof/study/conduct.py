@@ -8,10 +8,11 @@ import time
 from pathlib import Path
 from typing import Any
 
-from fogproof.study.cells import batches_of, cells_of, prepare
+from fogproof.study.cells import cells_of, prepare
 from fogproof.study.executors import crew
 from fogproof.study.files import Study
 from fogproof.study.history import compare
+from fogproof.study.plan import batches_of
 from fogproof.study.progress import Progress
 from fogproof.study.record import Circumstances, environment, make_record, read_results, table
 from fogproof.study.run import draw_missing

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import statistics
 import sys
 import time
 from collections.abc import Sequence
 from typing import Any
 
 from fogproof.study.batches import BatchResult
-from fogproof.study.cells import Batch, Cell
+from fogproof.study.cells import Cell
+from fogproof.study.plan import Batch
+
+_CALL, _SCRAMBLING = 3_000, 20_000
+"""Realisations that take about as long as calling an estimator, and as scrambling Sobol points: for the time left alone."""
 
 
 class Progress:
@@ -20,8 +25,9 @@ class Progress:
         self._left = [0.0] * len(cells)
         self._drawn = [0.0] * len(cells)
         self._took = [0.0] * len(cells)
+        self._level = [-1] * len(cells)
         for batch in batches:
-            if batch.index not in done:
+            if batch.number not in done:
                 self._left[batch.cell] += self._work(batch)
         self._total, self._count = len(batches), len(done)
         self._bar: Any = None
@@ -50,21 +56,26 @@ class Progress:
         self._left[batch.cell] -= work
         self._count += 1
         if result is not None:
+            if batch.level > self._level[batch.cell]:  # small batches are mostly overhead: the last count tells more
+                self._level[batch.cell], self._drawn[batch.cell], self._took[batch.cell] = batch.level, 0.0, 0.0
             self._drawn[batch.cell] += work
             self._took[batch.cell] += result.wall
         if self._bar is not None:
             name = f"{self._cells[batch.cell].scene.name}: {self._cells[batch.cell].name}"
-            self._bar.update(self._task, completed=self._count, description=name[:48], left=f"about {self.left()} left")
+            self._bar.update(self._task, completed=self._count, description=name[:32], left=f"about {self.left()} left")
 
     def left(self) -> str:
-        """Return the time left; a cell that has not been met yet is taken to be as slow as the average."""
-        drawn, took = sum(self._drawn), sum(self._took)
-        average = took / drawn if drawn else 0.0
-        each = [t / d if d else average for t, d in zip(self._took, self._drawn, strict=True)]
-        seconds = sum(e * w for e, w in zip(each, self._left, strict=True)) / self._slots
+        """Return the time left; a cell that has not been met yet is taken to be as slow as most."""
+        known = [took / drawn for took, drawn in zip(self._took, self._drawn, strict=True) if drawn]
+        usual = statistics.median(known) if known else 0.0
+        each = [took / drawn if drawn else usual for took, drawn in zip(self._took, self._drawn, strict=True)]
+        seconds = sum(rate * work for rate, work in zip(each, self._left, strict=True)) / self._slots
         return time.strftime("%M:%S" if seconds < 3600 else "%H:%M:%S", time.gmtime(max(seconds, 0)))
 
     def _work(self, batch: Batch) -> float:
-        if self._cells[batch.cell].method.axis == "steps":
-            return float(batch.count * batch.replicates)
-        return float(batch.samples * batch.replicates)
+        """Return a batch's work in realisations, or steps, with what the calls and the scrambling of points cost beside them."""
+        cell = self._cells[batch.cell]
+        each = batch.size if cell.method.axis == "steps" else batch.samples
+        calls = batch.replicates if cell.method.axis == "steps" else 1
+        scrambled = batch.replicates if cell.points == "sobol" else 0
+        return float(each * batch.replicates + _CALL * calls + _SCRAMBLING * scrambled)

@@ -19,11 +19,12 @@ import fogproof
 from fogproof.checks import jsonable
 from fogproof.errors import InvalidInputError, shorten
 from fogproof.study.aggregate import levels_of
-from fogproof.study.cells import Batch, Cell
+from fogproof.study.cells import Cell
 from fogproof.study.convergence import CONFIDENCE
 from fogproof.study.files import UNITS, Study
 from fogproof.study.judgement import tests_of
 from fogproof.study.measures import Measured, measure
+from fogproof.study.plan import Batch, Batches
 from fogproof.study.ranking import ranked
 from fogproof.study.store import Store
 from fogproof.verify import SCHEMA
@@ -46,7 +47,7 @@ class Circumstances:
 
 
 def make_record(
-    study: Study, cells: Sequence[Cell], batches: Sequence[Batch], store: Store, run: Circumstances
+    study: Study, cells: Sequence[Cell], batches: Batches, store: Store, run: Circumstances
 ) -> dict[str, Any]:
     """Return the JSON-ready record of what is in the store.
 
@@ -151,7 +152,7 @@ def _failure(row: tuple[int, int, str], cells: Sequence[Cell], batches: Sequence
     index, attempts, error = row
     batch = batches[index]
     cell = cells[batch.cell]
-    place = {"scene": cell.scene.name, "estimator": cell.name, "count": batch.count}
+    place = {"scene": cell.scene.name, "estimator": cell.name, "count": batch.size}
     return {"batch": index, **place, "attempts": attempts, "error": error}
 
 

@@ -9,9 +9,10 @@ from concurrent.futures import BrokenExecutor, CancelledError, Future
 from dataclasses import dataclass, field
 
 from fogproof.study.batches import BatchResult, run_batch
-from fogproof.study.cells import Batch, Cell
+from fogproof.study.cells import Cell
 from fogproof.study.executors import ClusterError, Crew
 from fogproof.study.files import Study
+from fogproof.study.plan import Batch
 from fogproof.study.store import Store
 
 ATTEMPTS = 3
@@ -58,7 +59,7 @@ def draw_missing(
     draw     what a worker calls
     """
     done = store.done()
-    work = _Work(deque(batch for batch in batches if batch.index not in done))
+    work = _Work(deque(batch for batch in batches if batch.number not in done))
     try:
         while work.waiting or work.suspects or work.running:
             while (batch := work.next(crew.slots)) is not None:
@@ -115,11 +116,11 @@ def _after_a_death(broken: list[Batch], work: _Work, store: Store, crew: Crew, a
 
 
 def _again(batch: Batch, error: str, work: _Work, store: Store, advance: Advance) -> None:
-    attempts = work.failed[batch.index] = work.failed.get(batch.index, 0) + 1
+    attempts = work.failed[batch.number] = work.failed.get(batch.number, 0) + 1
     if attempts < ATTEMPTS:
         work.suspects.append(batch)
     else:
-        store.fail(batch.index, attempts, error)
+        store.fail(batch.number, attempts, error)
         advance(batch, None)
 
 
