@@ -4,7 +4,8 @@
   const form = document.getElementById("filter");
   const rows = [...document.querySelectorAll("tr[data-status]")];
   const sections = [...document.querySelectorAll("details.case")];
-  const words = rows.map((row, i) => {
+  let texts; // of every section, gathered when a word is first asked for
+  const gather = () => rows.map((row, i) => {
     const section = sections[i] ?? row;
     const drawings = new Set(section.querySelectorAll("svg"));
     const walker = document.createTreeWalker(section, NodeFilter.SHOW_ELEMENT | NodeFilter.SHOW_TEXT, (node) =>
@@ -19,9 +20,10 @@
   const apply = () => {
     const status = form.elements.status.value;
     const wanted = form.elements.words.value.toLowerCase().split(/\s+/).filter(Boolean);
+    if (wanted.length) texts ??= gather();
     let shown = 0;
     rows.forEach((row, i) => {
-      const fits = (!status || row.dataset.status === status) && wanted.every((word) => words[i].includes(word));
+      const fits = (!status || row.dataset.status === status) && wanted.every((word) => texts[i].includes(word));
       row.hidden = !fits;
       if (sections[i]) sections[i].hidden = !fits;
       shown += fits;

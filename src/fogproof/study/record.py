@@ -18,10 +18,12 @@ from typing import Any
 import fogproof
 from fogproof.checks import jsonable
 from fogproof.errors import InvalidInputError, shorten
+from fogproof.plan import plan
+from fogproof.scene import Scattering, Scene
 from fogproof.study.aggregate import levels_of
 from fogproof.study.cells import Cell
 from fogproof.study.convergence import CONFIDENCE
-from fogproof.study.files import UNITS, Study
+from fogproof.study.files import UNITS, Study, StudyScene
 from fogproof.study.judgement import tests_of
 from fogproof.study.measures import Measured, measure
 from fogproof.study.plan import Batch, Batches
@@ -131,16 +133,25 @@ def _scene(number: int, study: Study, measured: Sequence[Measured]) -> dict[str,
             "method": reference.method,
             "source": reference.source,
         },
+        "plan": plan(_planned(scene)).to_dict(),
         "answer": ranked(own),
         "estimators": [m.record for m in own],
     }
+
+
+def _planned(scene: StudyScene) -> Scene:
+    """Return what is measured of a scene as a scene of its own: the transmittance is what is left of a background of 1."""
+    followed: dict[str, Scattering] = {"fog": "ambient", "airlight": "single"}
+    background = 1.0 if scene.quantity == "transmittance" else scene.background if scene.quantity == "fog" else 0.0
+    scattering = followed.get(scene.quantity, "none")
+    return Scene(scene.matter, scene.ray, scattering, scene.light, scene.occluders, scene.ambient, background)
 
 
 def _digest(scenes: list[dict[str, Any]]) -> str:
     """Return the sum of everything that no clock has touched."""
     kept = [
         {
-            **{key: value for key, value in scene.items() if key not in ("answer", "estimators")},
+            **{key: value for key, value in scene.items() if key not in ("plan", "answer", "estimators")},
             "estimators": [{k: v for k, v in e.items() if k != "speed"} for e in scene["estimators"]],
         }
         for scene in scenes
