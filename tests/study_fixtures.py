@@ -21,6 +21,14 @@ LIT = {
     "ray": {"origin": [0, 0, -2], "direction": [0, 0, 1], "length": 5},
     "light": {"position": [0.6, -0.8, 0.5], "intensity": 3},
 }
+BALL = {
+    "name": "ball",
+    "quantity": "radiance",
+    "medium": {"sigma_a": 0.1, "sigma_s": 0.9},
+    "ray": {"origin": [0.3, 0, -3], "direction": [0, 0, 1]},
+    "light": {"kind": "environment", "radiance": 1},
+    "shape": {"kind": "ball", "center": [0, 0, 0], "radius": 1},
+}
 HOW = Circumstances("a test", "now", 0.0, "threads", 1)
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import jsonschema
 import pytest
-from study_fixtures import LIT, RAY, kinds, toml
+from study_fixtures import BALL, LIT, RAY, kinds, toml
 
 ROOT = Path(__file__).resolve().parent.parent
 TABLE = {
@@ -21,6 +21,7 @@ TABLE = {
          "estimators": kinds("analog-fog", "certain-collision")},
         {"name": "beam", "quantity": "transmittance", "medium": {"sigma_a": 0.1, "sigma_s": 0.4}, "ray": RAY,
          "estimators": kinds("analog", {"kind": "march", "rule": "right"})},
+        {**BALL, "estimators": kinds("path-tracing", {"kind": "path-tracing", "gathering": "met"})},
     ],
 }  # fmt: skip
 
@@ -46,7 +47,7 @@ def test_it_says_what_is_best(ran):
     assert "is best: an error of 1 % takes" in out.stderr
     assert "is biased, relatively by" in out.stderr
     rows = [line.split()[0] for line in out.stdout.splitlines() if line.startswith("  ")]
-    assert rows.count("estimator") == 3
+    assert rows.count("estimator") == 4
     assert "airlight" in rows
     assert sorted(p.name for p in (folder / "run").iterdir()) == ["results.csv", "results.json", "study.sqlite"]
 
@@ -75,7 +76,7 @@ def test_every_count_has_a_row(ran):
         rows = list(csv.DictReader(file))
     counts = [c for s in record["scenes"] for e in s["estimators"] for c in e["counts"]]
     assert [float(row["rmse"]) for row in rows] == [c["rmse"] for c in counts]
-    assert {row["scene"] for row in rows} == {"lit", "fog", "beam"}
+    assert {row["scene"] for row in rows} == {"lit", "fog", "beam", "ball"}
 
 
 def test_a_march_through_what_does_not_vary_is_exact(ran):

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from study_fixtures import SMALL, kinds, study_from, toml
+from study_fixtures import BALL, LIT, RAY, SMALL, kinds, study_from, toml
 
 from fogproof.errors import FogproofError
 from fogproof.study import read_study
@@ -49,6 +49,10 @@ FAULTS = [
     (["scenes", 1, "medium"], {"kind": "grid-file", "path": "none.npy"}, "cannot read the grid"),
     (["scenes", 1, "medium"], {"sigma_a": [1, 2], "sigma_s": 1}, "a study follows one channel"),
     (["scenes", 0, "light", "position"], [0, 0, 0], "nothing converges"),
+    (["scenes", 0], {**LIT, "quantity": "radiance", "estimators": kinds("path-tracing")}, "shape must be a ball"),
+    (["scenes", 0], {**BALL, "ray": RAY, "estimators": kinds("path-tracing")}, "ray must start outside the ball"),
+    (["scenes", 0], {**BALL, "medium": {"sigma_a": 1, "sigma_s": 1, "emission": 1}, "estimators": kinds("path-tracing")},
+     "must be homogeneous, scatter isotropically and emit nothing"),
 ]  # fmt: skip
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 import json
 import tomllib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal, get_args
@@ -23,12 +23,14 @@ from fogproof.scene import AnyMedium, Ray
 from fogproof.scene.files import read_fields
 from fogproof.scene.lights import LightField
 from fogproof.scene.occluders import OccluderField
+from fogproof.scene.shapes import ShapeField, Unbounded
 from fogproof.study.media import StudyMedium, built, sha256_of
 from fogproof.study.methods import MethodField
+from fogproof.study.methods_paths import radiance_of_ball
 from fogproof.validate import number
 
-Quantity = Literal["transmittance", "fog", "airlight"]
-UNITS = {"transmittance": "1", "fog": "W/(m^2 sr)", "airlight": "W/(m^2 sr)"}
+Quantity = Literal["transmittance", "fog", "airlight", "radiance"]
+UNITS = {"transmittance": "1", "fog": "W/(m^2 sr)", "airlight": "W/(m^2 sr)", "radiance": "W/(m^2 sr)"}
 LARGEST_COUNT = 1 << 40
 
 
@@ -37,7 +39,7 @@ class StudyScene:
     """One scene, and the estimators that are measured in it.
 
     quantity    what they estimate: "transmittance" along the ray; "fog", the radiance in constant in-scattered light; "airlight",
-                the radiance scattered once from the light
+                the radiance scattered once from the light; "radiance", scattered any number of times in a ball under a sky
     estimators  see `methods`
     question    which question the scene helps to answer, "" for none
     """
@@ -50,6 +52,7 @@ class StudyScene:
     question: str = ""
     light: LightField | None = None
     occluders: tuple[OccluderField, ...] = ()
+    shape: ShapeField = field(default_factory=Unbounded)
     ambient: float = 0.0
     background: float = 0.0
 
@@ -79,6 +82,8 @@ class StudyScene:
                 return transmittance(self.matter, self.ray)
             case "fog":
                 return ambient_fog(self.matter, self.ray, self.ambient, self.background)
+            case "radiance":
+                return radiance_of_ball(self)
         if self.light is None:
             raise InvalidValueError("light", "must be given for the airlight", None, "add a light to the scene")
         return single_scattering(self.matter, self.ray, self.light, occluders=self.occluders)

@@ -23,6 +23,7 @@ from fogproof.contracts import Estimator, Reference
 from fogproof.scene.kinds import ByKind
 from fogproof.study.methods_airlight import Light, MarchedLight, MixedLight
 from fogproof.study.methods_fog import AnalogFogMethod, CertainCollision
+from fogproof.study.methods_paths import PathTracing
 from fogproof.study.methods_transmittance import Analog, Delta, March, Ratio, Regular, ResidualRatio
 
 if TYPE_CHECKING:
@@ -63,7 +64,7 @@ METHODS: dict[str, type] = {
     "airlight": Light,
     "mis": MixedLight,
     "marched-airlight": MarchedLight,
-    # Path tracing, with and without next-event estimation, belongs here: a class in `methods_paths.py`, quantity "radiance".
+    "path-tracing": PathTracing,
 }
 """The `kind` of each method in study files."""
 

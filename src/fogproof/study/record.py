@@ -133,7 +133,7 @@ def _scene(number: int, study: Study, measured: Sequence[Measured]) -> dict[str,
             "method": reference.method,
             "source": reference.source,
         },
-        "plan": plan(_planned(scene)).to_dict(),
+        "plan": None if scene.quantity == "radiance" else plan(_planned(scene)).to_dict(),
         "answer": ranked(own),
         "estimators": [m.record for m in own],
     }
