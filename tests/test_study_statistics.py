@@ -137,8 +137,8 @@ class Planted:
                 return MEAN * 1.002 + 1e-3 * rng.normal(size=n)
             case "dependent":  # stratified the wrong way: the right variance, but neighbours are alike
                 return MEAN - 0.5 + np.repeat(rng.random(-(-n // 16)), 16)[:n]
-            case "heavy":  # Pareto, index 1.5: the mean exists, the variance does not
-                return MEAN / 3 * (1 - rng.random(n)) ** (-1 / 1.5)
+            case "heavy":  # Pareto, index 1.2: the mean exists, the variance does not
+                return MEAN / 6 * (1 - rng.random(n)) ** (-1 / 1.2)
             case "broken":
                 return np.where(rng.random(n) < 1e-4, np.nan, MEAN)
         raise AssertionError(self.what)
