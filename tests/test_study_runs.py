@@ -9,7 +9,7 @@ import time
 
 import numpy as np
 import pytest
-from study_fixtures import HOW, LIT, SMALL, drawn, kinds, study_from, toml
+from study_fixtures import HOW, LIT, SMALL, drawn, estimator, kinds, study_from, toml
 
 from fogproof.study import read_study, run_study
 from fogproof.study.batches import run_batch
@@ -214,3 +214,21 @@ def test_batches_are_drawn_again_alike():
         one, two = (run_batch(STUDY.text, STUDY.folder, batch, reference) for _ in range(2))
         assert np.array_equal(one.moments, two.moments)
         assert np.array_equal(one.tail, two.tail)
+
+
+def test_an_estimator_that_always_fails_costs_the_others_nothing(tmp_path):
+    cells = cells_of(STUDY)
+
+    def poisoned(text, folder, batch, reference):
+        if cells[batch.cell].name == "mis":
+            raise ZeroDivisionError("always")
+        return run_batch(text, folder, batch, reference)
+
+    record = drawn(STUDY, tmp_path, draw=poisoned)
+    failed, twin, good = (estimator(record, name) for name in ("mis", "mis + sobol", "airlight"))
+    assert {f["estimator"] for f in record["failures"]} == {"mis"}
+    assert failed["speed"] is None
+    assert failed["outcome"] == twin["outcome"] == "inconclusive"
+    assert good["outcome"] == "not rejected"
+    assert record["answers"][0]["best"] == "airlight"
+    assert record["exit_code"] == 1

@@ -19,7 +19,7 @@ from fogproof.study import methods
 from fogproof.study.aggregate import Level, merged, pooled
 from fogproof.study.batches import TAIL, TAIL_SHARE, _largest, moments_of
 from fogproof.study.cells import cells_of
-from fogproof.study.convergence import falling, rmse, slope
+from fogproof.study.convergence import Z, falling, rmse, slope
 from fogproof.study.history import compare
 from fogproof.study.speed import time_of
 
@@ -73,6 +73,7 @@ def test_the_interval_of_an_rmse_holds_the_truth():
     covered(trials, sum(e.low <= 0.3 <= e.high for e in found), 0.98)
     heavy = rng.laplace(size=(trials, 16)) * 0.3 / math.sqrt(2)  # excess kurtosis 3
     covered(trials, sum(e.low <= 0.3 <= e.high for e in (rmse(x, 3.0, 0.0) for x in heavy)), 0.97)
+    assert rmse(errors[0], 1e5, 0.0).high == math.inf
     assert rmse(errors[0], 0.0, 0.1).high == pytest.approx(found[0].high + 0.1)
 
 
@@ -136,8 +137,8 @@ class Planted:
                 return MEAN * 1.002 + 1e-3 * rng.normal(size=n)
             case "dependent":  # stratified the wrong way: the right variance, but neighbours are alike
                 return MEAN - 0.5 + np.repeat(rng.random(-(-n // 16)), 16)[:n]
-            case "heavy":  # Pareto, index 1.5: the mean exists, the variance does not
-                return MEAN / 3 * (1 - rng.random(n)) ** (-1 / 1.5)
+            case "heavy":  # Pareto, index 1.2: the mean exists, the variance does not
+                return MEAN / 6 * (1 - rng.random(n)) ** (-1 / 1.2)
             case "broken":
                 return np.where(rng.random(n) < 1e-4, np.nan, MEAN)
         raise AssertionError(self.what)
@@ -168,7 +169,11 @@ def test_a_right_estimator_is_measured_as_it_is(monkeypatch, tmp_path):
     record = planted(monkeypatch, tmp_path, "right", "sharp")
     right = named(record, "right")
     assert right["outcome"] == "not rejected"
-    assert right["variance"]["low"] < SIGMA**2 < right["variance"]["high"]
+    n = right["moments"]["n"]
+    assert abs(right["variance"]["measured"] / SIGMA**2 - 1) < 7 * math.sqrt(2 / n)
+    assert right["variance"]["high"] / right["variance"]["low"] == pytest.approx(
+        math.exp(2 * Z * math.sqrt(2 / n)), rel=0.01
+    )
     assert [c["predicted"] for c in right["counts"]] == pytest.approx(
         [SIGMA / math.sqrt(c["count"]) for c in right["counts"]]
     )

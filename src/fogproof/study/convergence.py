@@ -36,8 +36,9 @@ def rmse(errors: np.ndarray, excess: float, reference_error: float) -> Estimate:
 
     value = float(np.sqrt(np.mean(np.square(errors))))
     freedom = len(errors) / (1 + max(excess, 0.0) / 2)
-    low = value * math.sqrt(freedom / float(chdtri(freedom, (1 - CONFIDENCE) / 2)))
-    high = value * math.sqrt(freedom / float(chdtri(freedom, (1 + CONFIDENCE) / 2)))
+    most, least = (float(chdtri(freedom, tail)) for tail in ((1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2))
+    low = value * math.sqrt(freedom / most) if most > 0 else 0.0
+    high = value * math.sqrt(freedom / least) if least > 0 else math.inf  # so heavy a tail leaves no upper end
     return Estimate(value, max(low - reference_error, 0.0), high + reference_error)
 
 

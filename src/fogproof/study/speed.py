@@ -59,7 +59,7 @@ class Efficiency:
             ratio = 1.0 if self.value == best.value else math.inf if math.isinf(self.value) else 0.0
             return Estimate(ratio, ratio, ratio)
         ratio = self.value / best.value
-        reach = math.exp(Z * math.hypot(self.spread, best.spread)) if self is not best else 1.0
+        reach = math.exp(min(Z * math.hypot(self.spread, best.spread), 700.0)) if self is not best else 1.0
         return Estimate(ratio, ratio / reach, ratio * reach)
 
 
