@@ -21,6 +21,8 @@ TAIL = 64
 """Largest deviations a batch keeps."""
 TAIL_SHARE = 64
 """They are at most one in so many of its samples."""
+_AT_ONCE = 1 << 13
+"""Realisations whose powers are summed at once."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -63,10 +65,13 @@ def draw_batch(cell: Cell, batch: Batch, reference: float) -> BatchResult:
         x, cost = _numbers(estimator.draw(rng, n), n)
     cpu, wall = time.thread_time() - cpu, time.perf_counter() - wall
     x = x.reshape(batch.replicates, batch.samples)
-    deviations = np.abs(x - reference)
     with np.errstate(over="ignore", invalid="ignore"):
-        moments = np.concatenate([moments_of(x), moments_of(np.square(deviations).reshape(1, -1))])
-    return BatchResult(batch.number, moments, _largest(deviations.ravel()), cost, wall, cpu)
+        own = moments_of(x)
+        deviations = np.subtract(x, reference)
+        tail = _largest(np.abs(deviations, out=deviations).ravel())
+        squares = np.square(deviations, out=deviations).reshape(1, -1)
+        moments = np.concatenate([own, moments_of(squares)])
+    return BatchResult(batch.number, moments, tail, cost, wall, cpu)
 
 
 def moments_of(x: np.ndarray) -> np.ndarray:
@@ -77,11 +82,16 @@ def moments_of(x: np.ndarray) -> np.ndarray:
     n = np.full(len(x), float(x.shape[1]))
     # Rounding must not leave a constant with a variance.
     mean = np.where(low == high, low, np.clip(x.mean(axis=1), low, high))
-    d = x - mean[:, None]
-    d2 = d * d
-    sums = [d2.sum(axis=1)]
-    for factor in (d, d2):  # in place: fresh arrays of this size cost more than the arithmetic
-        sums.append(np.multiply(factor, d2, out=factor).sum(axis=1))
+    sums = np.zeros((3, len(x)))
+    width = max(1, _AT_ONCE // len(x))
+    for start in range(
+        0, x.shape[1], width
+    ):  # a stretch at a time: fresh arrays of the whole cost more than the arithmetic
+        d = x[:, start : start + width] - mean[:, None]
+        d2 = d * d
+        sums[0] += d2.sum(axis=1)
+        for total, factor in zip(sums[1:], (d, d2), strict=True):
+            total += np.multiply(factor, d2, out=factor).sum(axis=1)
     ends = [np.count_nonzero(x == end[:, None], axis=1).astype(float) for end in (low, high)]
     return np.stack([n, mean, *sums, low, high, *ends, np.zeros(len(x))], axis=1)
 
