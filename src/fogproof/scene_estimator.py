@@ -80,7 +80,7 @@ class Lerp:
 
 
 @dataclass(frozen=True, eq=False)
-class Constant:
+class Unattenuated:
     """A radiance that nothing stands in the way of."""
 
     radiance: float
@@ -112,7 +112,11 @@ class LookedUpSource:
 
 
 def estimator_for(scene: Scene) -> SceneEstimator | ColouredSceneEstimator:
-    """Return the cheapest exact or unbiased estimator of what the camera sees, see `plan`; the scene has one ray."""
+    """Return the cheapest unbiased estimator of what the camera sees along one ray, see `plan`.
+
+    It draws radiances [W/(m^2 sr)], (n,), or (n, channels) of a coloured scene, whose mean is `analytic.radiance(scene)`; without
+    variance where nothing is random. Shadow rays are exact or by ratio tracking, never marched.
+    """
     if scene.ray.shape:
         raise UnsupportedError(f"an estimator looks along one ray, got a batch of shape {scene.ray.shape}", "ray")
     if scene.channels is not None:
@@ -144,7 +148,7 @@ def _direct(scene: Scene, attenuated: bool) -> Estimator:
     medium, ray, background = scene.medium, scene.ray, float(np.asarray(scene.background))
     ambient = float(np.asarray(scene.ambient)) if scene.scattering == "ambient" else 0.0
     if not attenuated:
-        return Constant(background)
+        return Unattenuated(background)
     if isinstance(medium, Procedural) and (callable(medium.albedo) or callable(medium.emission)):
         return LookedUpSource(medium, ray, ambient, background)
     return Lerp(_through(medium, ray), background, source_per_collision(medium, ambient))
