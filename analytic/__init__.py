@@ -4,52 +4,63 @@ Every function broadcasts over arrays and returns a `Reference` with |value - tr
 exact binary64 numbers.
 """
 
-from fogproof.analytic.airlight import airlight_integral, airlight_table
-from fogproof.analytic.airlight_moments import airlight_second_moment
-from fogproof.analytic.ambient_fog import ambient_fog
-from fogproof.analytic.ball import ball_albedo, ball_albedo_orders, ball_radiance, ball_radiance_orders, ball_source
-from fogproof.analytic.chandrasekhar_h import chandrasekhar_h
-from fogproof.analytic.coefficients import Coefficients, coefficients
-from fogproof.analytic.colour import sky_colour, sun_colour
-from fogproof.analytic.emission import emitted_radiance
-from fogproof.analytic.flights import mean_displacement, mean_square_displacement
-from fogproof.analytic.free_path import free_path
-from fogproof.analytic.furnace import thermal_furnace, white_furnace
-from fogproof.analytic.golden import Golden, golden_values
-from fogproof.analytic.half_space import (
+from fogproof.analytic.airlight.integral import airlight_integral, airlight_table
+from fogproof.analytic.airlight.single_scattering import single_scattering
+from fogproof.analytic.media.coefficients import Coefficients, coefficients
+from fogproof.analytic.multiple.ball import (
+    ball_albedo,
+    ball_albedo_orders,
+    ball_radiance,
+    ball_radiance_orders,
+    ball_source,
+)
+from fogproof.analytic.multiple.chandrasekhar_h import chandrasekhar_h
+from fogproof.analytic.multiple.flights import mean_displacement, mean_square_displacement
+from fogproof.analytic.multiple.half_space import (
     half_space_brdf,
     half_space_reflectance,
     half_space_reflectance_orders,
     half_space_spherical_albedo,
 )
-from fogproof.analytic.infinite_medium import point_source_collisions, point_source_fluence
-from fogproof.analytic.mean_path_length import mean_path_length, mean_scatterings
-from fogproof.analytic.phase_functions import phase_cdf, phase_mean_cosine, phase_pdf, phase_quantile
-from fogproof.analytic.radiance import radiance
-from fogproof.analytic.radiance_by_ode import radiance_by_ode
-from fogproof.analytic.radiance_by_quadrature import radiance_by_quadrature
-from fogproof.analytic.rayleigh_atmosphere import air_cross_section, air_optical_depth, plane_parallel_sky
-from fogproof.analytic.rayleigh_coefficient import rayleigh_scattering_coefficient
-from fogproof.analytic.rod import rod_reflectance, rod_reflectance_orders, rod_transmittance, rod_transmittance_orders
-from fogproof.analytic.second_moments import (
-    ambient_fog_variance,
-    transmittance_lookups,
-    transmittance_second_moment,
-    transmittance_variance,
+from fogproof.analytic.multiple.infinite_medium import point_source_collisions, point_source_fluence
+from fogproof.analytic.multiple.mean_path_length import mean_path_length, mean_scatterings
+from fogproof.analytic.multiple.rod import (
+    rod_reflectance,
+    rod_reflectance_orders,
+    rod_transmittance,
+    rod_transmittance_orders,
 )
-from fogproof.analytic.single_scattering import single_scattering
-from fogproof.analytic.single_scattering_moments import single_scattering_second_moment, single_scattering_variance
-from fogproof.analytic.slab import (
+from fogproof.analytic.multiple.slab import (
     slab_diffuse_reflectance,
     slab_diffuse_transmittance,
     slab_emissivity,
     slab_reflectance,
     slab_transmittance,
 )
-from fogproof.analytic.slab_brdf import slab_brdf
-from fogproof.analytic.slab_orders import slab_reflectance_orders, slab_transmittance_orders
-from fogproof.analytic.transmittance import optical_thickness, transmittance
-from fogproof.analytic.varying_phase import phase_pdf_at
+from fogproof.analytic.multiple.slab_brdf import slab_brdf
+from fogproof.analytic.multiple.slab_orders import slab_reflectance_orders, slab_transmittance_orders
+from fogproof.analytic.phase.functions import phase_cdf, phase_mean_cosine, phase_pdf, phase_quantile
+from fogproof.analytic.phase.rayleigh_coefficient import rayleigh_scattering_coefficient
+from fogproof.analytic.phase.varying import phase_pdf_at
+from fogproof.analytic.proven.golden import Golden, golden_values
+from fogproof.analytic.radiance import radiance
+from fogproof.analytic.rays.ambient_fog import ambient_fog
+from fogproof.analytic.rays.emission import emitted_radiance
+from fogproof.analytic.rays.free_path import free_path
+from fogproof.analytic.rays.furnace import thermal_furnace, white_furnace
+from fogproof.analytic.rays.radiance_by_ode import radiance_by_ode
+from fogproof.analytic.rays.radiance_by_quadrature import radiance_by_quadrature
+from fogproof.analytic.rays.transmittance import optical_thickness, transmittance
+from fogproof.analytic.sky.colour import sky_colour, sun_colour
+from fogproof.analytic.sky.rayleigh_atmosphere import air_cross_section, air_optical_depth, plane_parallel_sky
+from fogproof.analytic.variance.airlight import airlight_second_moment
+from fogproof.analytic.variance.single_scattering import single_scattering_second_moment, single_scattering_variance
+from fogproof.analytic.variance.transmittance import (
+    ambient_fog_variance,
+    transmittance_lookups,
+    transmittance_second_moment,
+    transmittance_variance,
+)
 
 __all__ = [
     "Coefficients",

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from fogproof.analytic.ambient_fog import ambient_fog
-from fogproof.analytic.single_scattering import single_scattering
+from fogproof.analytic.airlight.single_scattering import single_scattering
+from fogproof.analytic.rays.ambient_fog import ambient_fog
 from fogproof.contracts import Reference
 from fogproof.scene import Scene
 

@@ -5,7 +5,7 @@
 Speed: both programs in turns on the same rays, as a ratio of CPU times per ray. Typical means sigma_t and the distance h of the
 light from the ray log-uniform in 0.01 … 10, the camera -10 … 5 m from the foot, rays of 0.1 … 20 m. quad is asked for 13 digits
 and integrates a function of points in space, as one writes it first, or of scalars, by NumPy's functions or those of `math`.
-Accuracy: relative errors against ball arithmetic (tests/airlight_truth.py) on typical and on hard segments. `delivered`
+Accuracy: relative errors against ball arithmetic (tests/truth/airlight_truth.py) on typical and on hard segments. `delivered`
 counts segments with a stated error below 1 %; a lie is an error larger than stated, and must not happen.
 """
 
@@ -23,12 +23,12 @@ import numpy as np
 from scipy.integrate import quad
 
 from fogproof.analytic import single_scattering
-from fogproof.analytic.airlight import ALTERNATIVES
-from fogproof.analytic.airlight import integrate as by_method
-from fogproof.analytic.airlight_segments import whole
+from fogproof.analytic.airlight.integral import ALTERNATIVES
+from fogproof.analytic.airlight.integral import integrate as by_method
+from fogproof.analytic.airlight.segments import whole
 from fogproof.scene import HenyeyGreenstein, Isotropic, Medium, PhaseFunction, PointLight, Ray
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "truth"))
 from airlight_truth import airlight
 
 ROUNDS = 5

@@ -1,30 +1,30 @@
 """Samplers, pure functions of uniforms, and Monte Carlo estimators of the rendering equation. Nothing shared with the oracle."""
 
-from fogproof.estimators.compiled import CompiledField
-from fogproof.estimators.decoupled_airlight import CachedTransmittance, DecoupledAirlight
-from fogproof.estimators.delta_tracking import DeltaFreePath, DeltaTransmittance, delta_tracking
-from fogproof.estimators.directions import Cosines, Directions
-from fogproof.estimators.environment_airlight import EnvironmentAirlight
-from fogproof.estimators.equiangular import Equiangular
-from fogproof.estimators.extinction import Constant, Exponential, Linear, Vanishing, along
-from fogproof.estimators.fog import AnalogFog, CertainCollisionFog, HomogeneousSpectralFog, UniformEmission
-from fogproof.estimators.free_path import FreePath, HomogeneousSpectralFreePath, TruncatedFreePath
-from fogproof.estimators.lit_medium import LitMedium
-from fogproof.estimators.majorant_grid import MajorantGrid
-from fogproof.estimators.marched_airlight import MarchedAirlight
-from fogproof.estimators.noise import FractalNoise
-from fogproof.estimators.path_tracing import PathTracer, Roulette
-from fogproof.estimators.phase import phase_table, phase_value
-from fogproof.estimators.placing import placer
-from fogproof.estimators.random_walks import PointSourceWalks, RandomFlights, RodWalks, ScatteringsUnderUniformSky
-from fogproof.estimators.ratio_tracking import RatioTransmittance, ResidualRatioTransmittance, ratio_tracking
-from fogproof.estimators.ray_marching import MarchedFreePath, MarchedTransmittance, RayMarch, feature_size
-from fogproof.estimators.regular_tracking import RegularFreePath, RegularTransmittance, regular_tracking
-from fogproof.estimators.shadow_rays import shadow_transmittance
-from fogproof.estimators.single_scattering import Airlight
-from fogproof.estimators.spectral_path_tracing import SpectralPathTracer
-from fogproof.estimators.spectral_tracking import SpectralFog, SpectralFreePath, spectral_tracking
-from fogproof.estimators.transmittance import AnalogTransmittance, SpectralTransmittance
+from fogproof.estimators.airlight.decoupled import CachedTransmittance, DecoupledAirlight
+from fogproof.estimators.airlight.environment import EnvironmentAirlight
+from fogproof.estimators.airlight.equiangular import Equiangular
+from fogproof.estimators.airlight.lit_medium import LitMedium
+from fogproof.estimators.airlight.marched import MarchedAirlight
+from fogproof.estimators.airlight.placing import placer
+from fogproof.estimators.airlight.shadow_rays import shadow_transmittance
+from fogproof.estimators.airlight.single_scattering import Airlight
+from fogproof.estimators.free_paths.extinction import Constant, Exponential, Linear, Vanishing, along
+from fogproof.estimators.free_paths.fog import AnalogFog, CertainCollisionFog, HomogeneousSpectralFog, UniformEmission
+from fogproof.estimators.free_paths.free_path import FreePath, HomogeneousSpectralFreePath, TruncatedFreePath
+from fogproof.estimators.free_paths.transmittance import AnalogTransmittance, SpectralTransmittance
+from fogproof.estimators.paths.random_walks import PointSourceWalks, RandomFlights, RodWalks, ScatteringsUnderUniformSky
+from fogproof.estimators.paths.spectral import SpectralPathTracer
+from fogproof.estimators.paths.tracer import PathTracer, Roulette
+from fogproof.estimators.phase.directions import Cosines, Directions
+from fogproof.estimators.phase.functions import phase_table, phase_value
+from fogproof.estimators.tracking.compiled import CompiledField
+from fogproof.estimators.tracking.delta import DeltaFreePath, DeltaTransmittance, delta_tracking
+from fogproof.estimators.tracking.majorant_grid import MajorantGrid
+from fogproof.estimators.tracking.marching import MarchedFreePath, MarchedTransmittance, RayMarch, feature_size
+from fogproof.estimators.tracking.noise import FractalNoise
+from fogproof.estimators.tracking.ratio import RatioTransmittance, ResidualRatioTransmittance, ratio_tracking
+from fogproof.estimators.tracking.regular import RegularFreePath, RegularTransmittance, regular_tracking
+from fogproof.estimators.tracking.spectral import SpectralFog, SpectralFreePath, spectral_tracking
 
 __all__ = [
     "Airlight",

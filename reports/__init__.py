@@ -9,12 +9,13 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from fogproof.reports.comparison import worse, write_comparison_page
 from fogproof.reports.files import prepare_folder
-from fogproof.reports.gallery import write_gallery
-from fogproof.reports.junit import write_junit
-from fogproof.reports.page import write_page
-from fogproof.reports.records import (
+from fogproof.reports.gallery.pictures import write_gallery
+from fogproof.reports.pages.comparison import worse, write_comparison_page
+from fogproof.reports.pages.junit import write_junit
+from fogproof.reports.pages.page import write_page
+from fogproof.reports.pages.study import write_study_page
+from fogproof.reports.records.runs import (
     RESULTS,
     SCHEMA,
     Run,
@@ -24,8 +25,7 @@ from fogproof.reports.records import (
     write_csv,
     write_record,
 )
-from fogproof.reports.study_page import write_study_page
-from fogproof.reports.study_records import as_run, parse_study
+from fogproof.reports.records.studies import as_run, parse_study
 
 __all__ = [
     "SCHEMA",

@@ -1,6 +1,6 @@
 """Make the golden tables: proven values of the oracle's quantities, by ball arithmetic alone.
 
-python tools/make_golden.py          writes analytic/golden.json
+python tools/make_golden.py          writes analytic/proven/golden.json
 python tools/make_golden.py --check  says whether the shipped tables still hold, without writing
 """
 
@@ -14,13 +14,13 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-from fogproof.analytic.balls import Ball
-from fogproof.analytic.rigorous import proven_radiance, proven_thickness, proven_transmittance
-from fogproof.analytic.rigorous_airlight import airlight_ball
+from fogproof.analytic.proven.airlight import airlight_ball
+from fogproof.analytic.proven.balls import Ball
+from fogproof.analytic.proven.radiance import proven_radiance, proven_thickness, proven_transmittance
 from fogproof.quantities import quantities
 from fogproof.scene.files import read_fields
 
-FILE = Path(__file__).resolve().parent.parent / "analytic" / "golden.json"
+FILE = Path(__file__).resolve().parent.parent / "analytic" / "proven" / "golden.json"
 DIGITS = 38
 
 RAY = {"origin": [0.1, -0.2, -3.0], "direction": [0.48, 0.36, 0.8], "length": 4.5}

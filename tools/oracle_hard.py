@@ -3,8 +3,8 @@
     python tools/oracle_hard.py [CASES] [SEED]
 
 sigma_t 1e-9 … 300 (and 0), h 1e-12 … 30, lights before, beside and behind the camera, optical thickness up to 645, one ray in
-five endless, |g| <= .9999; fog and transmittance from tau = 1e-300 to 1e3. The truth (tests/airlight_truth.py and
-tests/media_truth.py) uses other formulas. The stated error may be 1e-14 of the value, of transmittance and fog 1e-14 tau where
+five endless, |g| <= .9999; fog and transmittance from tau = 1e-300 to 1e3. The truth (tests/truth/airlight_truth.py and
+tests/truth/media_truth.py) uses other formulas. The error may be 1e-14 of the value, of transmittance and fog 1e-14 tau where
 tau > 1. Exits with 1 if a promise is broken.
 """
 
@@ -21,11 +21,15 @@ from pathlib import Path
 import mpmath as mp
 import numpy as np
 
-from fogproof.analytic import airlight_integral, ambient_fog, transmittance
+from fogproof.analytic import (
+    airlight_integral,
+    ambient_fog,
+    transmittance,
+)
 from fogproof.contracts import Reference
 from fogproof.scene import HenyeyGreenstein, Isotropic, Medium, PhaseFunction, Ray, Rayleigh, Schlick
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "truth"))
 from airlight_truth import airlight
 from media_truth import fog
 

@@ -6,7 +6,7 @@ import json
 from dataclasses import dataclass
 from fractions import Fraction
 
-from fogproof.analytic.golden import Golden, golden_values
+from fogproof.analytic.proven.golden import Golden, golden_values
 from fogproof.contracts import Reference
 from fogproof.quantities import quantities
 from fogproof.scene.files import read_fields

@@ -8,9 +8,9 @@ from functools import cache
 from typing import Any
 
 from fogproof import analytic
-from fogproof.analytic.airlight import Method
-from fogproof.analytic.airlight_moments import Sampling
-from fogproof.analytic.second_moments import Tracking
+from fogproof.analytic.airlight.integral import Method
+from fogproof.analytic.variance.airlight import Sampling
+from fogproof.analytic.variance.transmittance import Tracking
 from fogproof.contracts import Reference
 from fogproof.scene import Isotropic, PointLight, Ray, Scattering, Scene
 from fogproof.scene.arrays import FloatArray

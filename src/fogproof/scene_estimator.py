@@ -15,10 +15,16 @@ import numpy as np
 
 from fogproof.contracts import Draws, Estimator
 from fogproof.errors import UnsupportedError
-from fogproof.estimators import Airlight, RatioTransmittance, RegularTransmittance, along, delta_tracking
-from fogproof.estimators.fog import source_per_collision
-from fogproof.estimators.placing import Placing
-from fogproof.estimators.shadow_rays import ShadowRays
+from fogproof.estimators import (
+    Airlight,
+    RatioTransmittance,
+    RegularTransmittance,
+    along,
+    delta_tracking,
+)
+from fogproof.estimators.airlight.placing import Placing
+from fogproof.estimators.airlight.shadow_rays import ShadowRays
+from fogproof.estimators.free_paths.fog import source_per_collision
 from fogproof.plan import plan
 from fogproof.scene import AnyMedium, ExponentialMedium, LinearMedium, Medium, Procedural, Ray, Scene, VoxelGrid
 from fogproof.scene.lights import DirectionalLight, Light

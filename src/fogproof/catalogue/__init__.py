@@ -4,18 +4,13 @@ from __future__ import annotations
 
 from functools import cache
 
-from fogproof.catalogue import (
-    cosines,
-    directions,
-    equiangular,
-    free_paths,
-    mitsuba,
-    multiple_scattering,
-    single_scattering,
-    trackers,
-    transmittance_and_fog,
-)
+from fogproof.catalogue.airlight import equiangular, single_scattering
 from fogproof.catalogue.cases import Altered, Case, EstimatorCase, SamplerCase, Twin
+from fogproof.catalogue.free_paths import sampled as free_paths
+from fogproof.catalogue.multiple import paths as multiple_scattering
+from fogproof.catalogue.phase import cosines, directions, mitsuba
+from fogproof.catalogue.rays import transmittance_and_fog
+from fogproof.catalogue.tracking import trackers
 
 __all__ = ["Altered", "Case", "EstimatorCase", "SamplerCase", "Twin", "all_cases"]
 

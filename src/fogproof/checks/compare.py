@@ -15,11 +15,11 @@ from typing import Any
 import numpy as np
 
 from fogproof.checks.diagnosis import likely_cause
-from fogproof.checks.goodness import MISS, binomial_p
-from fogproof.checks.means import LARGEST_CORRECTION, LARGEST_SHARE, Moments
+from fogproof.checks.statistics.goodness import MISS, binomial_p
+from fogproof.checks.statistics.means import LARGEST_CORRECTION, LARGEST_SHARE, Moments
+from fogproof.checks.statistics.tails import normal_quantile, student_two_sided
 from fogproof.checks.streams import batch_generator, batch_sizes, fresh_seed
 from fogproof.checks.subject import call
-from fogproof.checks.tails import normal_quantile, student_two_sided
 from fogproof.checks.verdict import Finding, Interval, Outcome, Resolution, Verdict
 from fogproof.contracts import Draws
 from fogproof.errors import SubjectError

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from fogproof.checks.grid import Marginal
+from fogproof.checks.density.grid import Marginal
 from fogproof.checks.verdict import Finding
 
 CAUSES = (

@@ -12,7 +12,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from fogproof.checks.goodness import MISS, kolmogorov_critical
+from fogproof.checks.statistics.goodness import MISS, kolmogorov_critical
 from fogproof.checks.verdict import Finding
 
 WEIGHTS = {

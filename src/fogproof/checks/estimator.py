@@ -13,17 +13,17 @@ from typing import Any
 
 import numpy as np
 
-from fogproof.checks.bets import Bets
-from fogproof.checks.coverage import Coverage, coverage_test
-from fogproof.checks.dependence import Succession, repeated_stretches, runs_test
 from fogproof.checks.diagnosis import likely_cause
 from fogproof.checks.escalation import EARLY, stages
-from fogproof.checks.heavy import Tail
-from fogproof.checks.means import Moments, mean_test, trusted
 from fogproof.checks.quantities import Quantity, quantities_of
+from fogproof.checks.statistics.bets import Bets
+from fogproof.checks.statistics.coverage import Coverage, coverage_test
+from fogproof.checks.statistics.dependence import Succession, repeated_stretches, runs_test
+from fogproof.checks.statistics.heavy import Tail
+from fogproof.checks.statistics.means import Moments, mean_test, trusted
+from fogproof.checks.statistics.tails import normal_quantile
 from fogproof.checks.streams import batch_generator, batch_sizes, fresh_seed
 from fogproof.checks.subject import call
-from fogproof.checks.tails import normal_quantile
 from fogproof.checks.verdict import Finding, Outcome, Resolution, Verdict, jsonable
 from fogproof.contracts import Draws, Reference
 from fogproof.errors import SubjectError

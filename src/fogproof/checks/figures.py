@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from fogproof.checks.grid import Marginal, Plane
+from fogproof.checks.density.grid import Marginal, Plane
 from fogproof.checks.verdict import jsonable
 
 _BINS = 64

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from fogproof.checks.charts import Chart
-from fogproof.checks.model import Density, Effort
-from fogproof.checks.quadrature import Leaves, evaluate, refine
+from fogproof.checks.density.charts import Chart
+from fogproof.checks.density.model import Density, Effort
+from fogproof.checks.density.quadrature import Leaves, evaluate, refine
 from fogproof.checks.subject import Precision, Subject, call, nudged
 from fogproof.checks.verdict import Finding, Outcome, Resolution
 from fogproof.errors import SubjectError

@@ -8,17 +8,25 @@ from functools import partial
 
 import numpy as np
 
-from fogproof.checks.charts import Chart, chart_of
-from fogproof.checks.features import Ranges, emptiest, ranges_of_line, ranges_of_plane
-from fogproof.checks.grid import Grid, Marginal, blurred, grid_of, line_grid_from_cdf, refilled, unit_square_grid
-from fogproof.checks.lookup import Lookup
-from fogproof.checks.model import Density, Effort, integrated, looked_at, looked_at_plane
+from fogproof.checks.density.charts import Chart, chart_of
+from fogproof.checks.density.features import Ranges, emptiest, ranges_of_line, ranges_of_plane
+from fogproof.checks.density.grid import (
+    Grid,
+    Marginal,
+    blurred,
+    grid_of,
+    line_grid_from_cdf,
+    refilled,
+    unit_square_grid,
+)
+from fogproof.checks.density.lookup import Lookup
+from fogproof.checks.density.model import Density, Effort, integrated, looked_at, looked_at_plane
+from fogproof.checks.density.quadrature import Leaves
 from fogproof.checks.normalisation import FLOOR, albedo, effort, mean_cosine, normalisation, rounding_share
 from fogproof.checks.probes import cdf_agreement, edge_uniforms, precision_agreement, reference_agreement
 from fogproof.checks.promises import inside, usual_labels
-from fogproof.checks.quadrature import Leaves
-from fogproof.checks.repeats import KEPT, expected_repeats
-from fogproof.checks.serial import in_units
+from fogproof.checks.statistics.repeats import KEPT, expected_repeats
+from fogproof.checks.statistics.serial import in_units
 from fogproof.checks.streams import batch_generator
 from fogproof.checks.subject import Subject, call, nudged, numbers
 from fogproof.checks.tally import Counter, Tally

@@ -21,14 +21,14 @@ import numpy as np
 from fogproof.checks.diagnosis import likely_cause, mirrored
 from fogproof.checks.escalation import EARLY, Stage, Test, doubtful, judged, stages, total_weight
 from fogproof.checks.figures import bins_figure, z_map_figure
-from fogproof.checks.goodness import binomial, chi_square, chi_square_along, chi_square_sparse, kolmogorov
-from fogproof.checks.means import Moments, mean_test
 from fogproof.checks.normalisation import FLOOR
 from fogproof.checks.prepared import Prepared, prepare
-from fogproof.checks.repeats import repeats_test
-from fogproof.checks.scan import blocks, scan, scan_ends, scan_plane
-from fogproof.checks.serial import serial_test
-from fogproof.checks.smooth import cross, smooth
+from fogproof.checks.statistics.goodness import binomial, chi_square, chi_square_along, chi_square_sparse, kolmogorov
+from fogproof.checks.statistics.means import Moments, mean_test
+from fogproof.checks.statistics.repeats import repeats_test
+from fogproof.checks.statistics.scan import blocks, scan, scan_ends, scan_plane
+from fogproof.checks.statistics.serial import serial_test
+from fogproof.checks.statistics.smooth import cross, smooth
 from fogproof.checks.streams import batch_generator, batch_sizes, fresh_seed
 from fogproof.checks.subject import Precision, Subject
 from fogproof.checks.tally import Tally

@@ -13,12 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from fogproof.checks.features import Ranges, kept
-from fogproof.checks.grid import Grid
-from fogproof.checks.means import Moments
+from fogproof.checks.density.features import Ranges, kept
+from fogproof.checks.density.grid import Grid
 from fogproof.checks.promises import Watch
-from fogproof.checks.repeats import KEPT, fingerprints
-from fogproof.checks.serial import Successions
+from fogproof.checks.statistics.means import Moments
+from fogproof.checks.statistics.repeats import KEPT, fingerprints
+from fogproof.checks.statistics.serial import Successions
 from fogproof.checks.streams import BATCH
 from fogproof.checks.subject import Subject
 from fogproof.contracts import Draw

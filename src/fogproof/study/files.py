@@ -25,8 +25,8 @@ from fogproof.scene.lights import LightField
 from fogproof.scene.occluders import OccluderField
 from fogproof.scene.shapes import ShapeField, Unbounded
 from fogproof.study.media import StudyMedium, built, sha256_of
-from fogproof.study.methods import MethodField
-from fogproof.study.methods_paths import radiance_of_ball
+from fogproof.study.methods.paths import radiance_of_ball
+from fogproof.study.methods.table import MethodField
 from fogproof.validate import number
 
 Quantity = Literal["transmittance", "fog", "airlight", "radiance"]

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from fogproof.checks.compare import difference_test
-from fogproof.checks.means import Moments
-from fogproof.checks.tails import normal_quantile, normal_two_sided
+from fogproof.checks.statistics.means import Moments
+from fogproof.checks.statistics.tails import normal_quantile, normal_two_sided
 from fogproof.study.convergence import Z
 
 _LEAST = 4

@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fogproof.checks import Finding
-from fogproof.checks.heavy import Tail
-from fogproof.checks.means import Moments, mean_test
-from fogproof.checks.tails import gamma_above, normal_quantile, student_two_sided
+from fogproof.checks.statistics.heavy import Tail
+from fogproof.checks.statistics.means import Moments, mean_test
+from fogproof.checks.statistics.tails import gamma_above, normal_quantile, student_two_sided
 from fogproof.checks.verdict import Outcome
 from fogproof.contracts import Reference
 from fogproof.study.aggregate import Level, pooled

@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from fogproof.checks.means import Moments
+from fogproof.checks.statistics.means import Moments
 from fogproof.contracts import Reference
 from fogproof.study.aggregate import Level, pooled
 from fogproof.study.cells import Cell
 from fogproof.study.convergence import Estimate, Falling, Z, falling, rmse, slope
 from fogproof.study.judgement import Judged, excess, inherited, judge, resolution_of
-from fogproof.study.methods import kind_of, options_of
+from fogproof.study.methods.table import kind_of, options_of
 from fogproof.study.speed import Efficiency, spread_of, targets_of, time_of
 
 

@@ -1,0 +1,86 @@
+"""Airlight along camera rays: radiance that one scattering sends from a light to the camera."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from fogproof.analytic.airlight.by_quadrature import single_scattering_by_quadrature
+from fogproof.analytic.airlight.directional_light import directional_light
+from fogproof.analytic.airlight.environment_light import environment_light
+from fogproof.analytic.airlight.integral import Method
+from fogproof.analytic.airlight.point_light import point_light
+from fogproof.analytic.geometry.convex_shapes import contains
+from fogproof.analytic.geometry.flat_rays import FlatRays, blocks_of
+from fogproof.contracts import Reference
+from fogproof.errors import InvalidValueError, UnsupportedError
+from fogproof.scene import AnyMedium, Medium, Ray
+from fogproof.scene.lights import DirectionalLight, Environment, Light, PointLight, SpotLight, strength
+from fogproof.scene.occluders import Occluder
+from fogproof.scene.shapes import Shape, Unbounded
+from fogproof.validate import channel_count
+
+
+def single_scattering(
+    medium: AnyMedium,
+    ray: Ray,
+    light: Light,
+    *,
+    occluders: Sequence[Occluder] = (),
+    shape: Shape | None = None,
+    method: Method = "asinh",
+) -> Reference:
+    """Return the single-scattered radiance (airlight) along camera rays [W/(m^2 sr)].
+
+    L = int_0^length T(camera, x_t) sigma_s(x_t) int f_p(x_t, mu) L_light(x_t, w) T dw dt; for a point light of intensity I
+    [W/sr] at distance r the inner integral is f_p(mu) I T(x_t, light)/r^2.
+
+    medium     homogeneous, or any other kind for lights with a position or a direction
+    ray        rays of shape R
+    light      point, spot or directional light, or a constant environment
+    occluders  spheres and disks between the light and the ray; the camera sees past them
+    shape      convex region that a homogeneous medium fills; all of space unless given. From outside of all of space no
+               light arrives: a directional light and an environment give 0 there
+    method     how the airlight integral of a homogeneous medium is computed, see `airlight_integral`
+
+    The result has shape R, or R + (C,) if medium or light have C channels. A light on the ray gives inf, a medium that
+    does not scatter 0. For homogeneous media `error` is a bound. It counts rounding, and half a unit in the last place of
+    each coordinate of the origin, the direction and the light: a direction in float64 is no better than that, and neither
+    is the answer. For other media, environments and shapes without the light in them it is an estimate by quadrature.
+    Source: Sun, Ramamoorthi, Narasimhan & Nayar 2005, A practical analytic single scattering model (homogeneous, point).
+    """
+    shape = Unbounded() if shape is None else shape
+    for name, given, kinds in (("medium", medium, AnyMedium), ("light", light, Light), ("shape", shape, Shape)):
+        if not isinstance(given, kinds):
+            raise InvalidValueError(name, f"must be a {name}", given)
+    if not isinstance(ray, Ray):
+        raise InvalidValueError("ray", "must be a Ray", ray)
+    for occluder in occluders:
+        if not isinstance(occluder, Occluder):
+            raise InvalidValueError("occluders", "must be a list of Sphere and Disk", occluder)
+    if not isinstance(medium, Medium) and not isinstance(shape, Unbounded):
+        raise UnsupportedError(f"a {type(medium).__name__} has bounds of its own: leave the shape away", "shape")
+    medium_channels = (0.0,) * medium.channels if medium.channels else 0.0
+    channels = channel_count(medium=medium_channels, light=strength(light))
+    parts = [_along(medium, block, light, shape, occluders, method) for block in blocks_of(ray)]
+    value, error = (np.concatenate(columns) for columns in list(zip(*parts, strict=True))[:2])
+    result = ray.shape if channels is None else (*ray.shape, channels)
+    value, error = (np.broadcast_to(x, (*x.shape[:-1], channels or 1)).reshape(result) for x in (value, error))
+    return Reference(value, error, *parts[0][2:])
+
+
+def _along(
+    medium: AnyMedium, ray: FlatRays, light: Light, shape: Shape, occluders: Sequence[Occluder], method: Method
+) -> tuple[np.ndarray, np.ndarray, str, str]:
+    """Return radiance and error (n, channels) of rays of shape (n,), method and source, by what serves them."""
+    match light:
+        case Environment():
+            return environment_light(medium, ray, light, shape, occluders)
+        case DirectionalLight() if isinstance(medium, Medium):
+            return directional_light(medium, ray, light, shape, occluders)
+        case PointLight() | SpotLight() if isinstance(medium, Medium) and contains(shape, np.array(light.position)):
+            return point_light(medium, ray, light, shape, occluders, method)
+        case DirectionalLight() | PointLight() | SpotLight():
+            return single_scattering_by_quadrature(medium, ray, light, shape, occluders)
+    raise InvalidValueError("light", "must be a light", light)

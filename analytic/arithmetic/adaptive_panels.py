@@ -1,0 +1,96 @@
+"""Adaptive Gauss-Legendre quadrature of many integrals at once, with an error carried by the integrand itself.
+
+A panel of 16 nodes is compared with its halves, which replace it; the difference is the error estimate, far above the error
+of the halves where the integrand is smooth. Where it is too large the halves are halved again, those of all integrals together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from fogproof.analytic.arithmetic.error_free import EPS
+from fogproof.analytic.arithmetic.panel_rule import NODES, WEIGHTS
+
+TOLERANCE = 1e-11
+"""Relative error aimed at for each integral."""
+
+ROUNDS = 40
+PANELS = 1024
+"""Most panels of one integral; what is left undone by then stands in the error."""
+
+BLOCK = 2048
+"""Panels evaluated at a time."""
+
+WIDEST, FIRST = 4.0, 32
+"""Width of the widest panel to begin with, if that needs no more than so many in a piece."""
+
+
+class Panels(NamedTuple):
+    """Parts of pieces, from `low` over `width` of their variable, (p,), with value and errors, (p, channels)."""
+
+    piece: np.ndarray
+    low: np.ndarray
+    width: np.ndarray
+    value: np.ndarray
+    noise: np.ndarray
+    off: np.ndarray
+
+
+Look = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
+"""(pieces (p,), places in their variable (p, nodes)) -> integrand and its error, (p, nodes, channels)."""
+
+
+def integrate_panels(
+    span: np.ndarray, look: Look, owner: np.ndarray, weight: np.ndarray, count: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the integrals over the pieces of each owner and their estimated errors, (count, channels).
+
+    span    (p,) length of each piece in its variable, which starts at 0
+    look    the integrand
+    owner   (p,) which of the `count` results a piece belongs to
+    weight  (p,) of the pieces; what is missing to 1 counts as error
+    """
+    parts = np.clip(np.ceil(span / WIDEST), 1, FIRST).astype(int)
+    piece = np.repeat(np.arange(len(span)), parts)
+    width = span[piece] / parts[piece]
+    step = np.arange(len(piece)) - np.repeat(np.cumsum(parts) - parts, parts)
+    panels = _evaluate(look, piece, step * width, width)
+    done = Panels(*(x[:0] for x in panels))
+    totals = np.zeros((count, panels.value.shape[1]))
+    for _ in range(ROUNDS):
+        if not len(panels.piece):
+            break
+        half = panels.width / 2
+        left = _evaluate(look, panels.piece, panels.low, half)
+        right = _evaluate(look, panels.piece, panels.low + half, half)
+        off = np.abs(left.value + right.value - panels.value) / 2
+        both = Panels(*(np.concatenate(x) for x in zip(left._replace(off=off), right._replace(off=off), strict=True)))
+        done = Panels(*(np.concatenate(x) for x in zip(done, both, strict=True)))
+        rays = owner[done.piece]
+        number = np.bincount(rays, minlength=count)
+        totals = np.zeros_like(totals)
+        np.add.at(totals, rays, done.value)
+        share = TOLERANCE / number[rays][:, None] * totals[rays]
+        bad = (done.off > np.maximum(share, 4 * EPS * done.value)).any(axis=1)
+        bad &= (number[rays] < PANELS) & (done.width > 1e-13 * (done.low + done.width))
+        panels, done = Panels(*(x[bad] for x in done)), Panels(*(x[~bad] for x in done))
+    panels = Panels(*(np.concatenate(x) for x in zip(done, panels, strict=True)))
+    certain = weight[panels.piece][:, None]
+    value, error = np.zeros_like(totals), np.zeros_like(totals)
+    np.add.at(value, owner[panels.piece], certain * panels.value)
+    np.add.at(error, owner[panels.piece], panels.off + panels.noise + (1 - certain) * panels.value)
+    return value, error + 64 * EPS * value
+
+
+def _evaluate(look: Look, piece: np.ndarray, low: np.ndarray, width: np.ndarray) -> Panels:
+    found = []
+    for i in range(0, max(len(piece), 1), BLOCK):
+        block = slice(i, i + BLOCK)
+        f, noise = look(piece[block], low[block, None] + width[block, None] * NODES)
+        scale = width[block, None]
+        found.append((scale * np.einsum("k,pkc->pc", WEIGHTS, f), scale * np.einsum("k,pkc->pc", WEIGHTS, noise)))
+    value, noise = (np.concatenate(x) for x in zip(*found, strict=True))
+    return Panels(piece, low, width, value, noise, np.zeros_like(value))

@@ -1,0 +1,217 @@
+"""Adaptive quadrature of the rendering equation along rays, from the local coefficients alone.
+
+A ray is cut into panels. Each is summed up by its optical thickness and by the radiance that its own source sends to
+its start, both from the same 16 Gauss-Legendre nodes: the running integral of sigma_t gives tau at every node. Two
+neighbours compose as layers of paint do,
+
+    tau = tau_1 + tau_2,    gain = gain_1 + exp(-tau_1) gain_2,
+
+so a panel can be compared with its own halves. The difference is the error estimate, far above the error of the
+halves, which replace their parent where it is too large. All rays are refined together, one call of the medium a round.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from fogproof.analytic.arithmetic.error_free import EPS, TINY, two_sum
+from fogproof.analytic.arithmetic.panel_rule import NODES, RUNNING, WEIGHTS
+from fogproof.analytic.geometry.rays import Thickness
+from fogproof.analytic.media.breakpoints import breakpoints
+from fogproof.analytic.media.coefficients import Coefficients, coefficients
+from fogproof.scene import AnyMedium, Procedural, Ray
+
+TOLERANCE = 1e-13
+"""Relative error aimed at; rounding may end above it, and says so."""
+
+ROUNDS = 50
+PANELS = 4096
+"""Most panels of one ray; what is left undone by then stands in the error."""
+
+FIRST = 8
+"""Panels that an interval without known breaks starts with."""
+
+THICK, UNSEEN = 8.0, 1e-30
+"""A panel thicker than this is halved, as long as more than that of its light arrives."""
+
+BLOCK = 4096
+"""Panels evaluated at a time."""
+
+SOURCE = "Gauss-Legendre quadrature, panel against its halves; composition as in Porter & Duff 1984"
+
+SourceTerm = Callable[[Coefficients], np.ndarray]
+"""Radiance gained per metre [W/(m^3 sr)] at points with these coefficients."""
+
+
+Look = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
+"""(rays (p,), distances (p, nodes)) -> sigma_t and source there, (p, nodes) or (p, nodes, channels)."""
+
+
+class Along(NamedTuple):
+    """Optical thickness of each ray and the radiance its sources send to its start, (n,) or (n, channels)."""
+
+    tau: np.ndarray
+    tau_error: np.ndarray
+    gain: np.ndarray
+    gain_error: np.ndarray
+
+
+class Panels(NamedTuple):
+    """Panels of all rays, (p,) or (p, channels) each; the errors are estimates for this panel.
+
+    jumps  sum of |differences| between neighbouring nodes, of sigma_t and of the source, (p, 2) or (p, channels, 2)
+    ends   their values at the first and the last node, (p, 2, 2) or (p, channels, 2, 2)
+    """
+
+    ray: np.ndarray
+    start: np.ndarray
+    width: np.ndarray
+    tau: np.ndarray
+    gain: np.ndarray
+    tau_error: np.ndarray
+    gain_error: np.ndarray
+    jumps: np.ndarray
+    ends: np.ndarray
+
+
+def procedural_thickness(medium: Procedural, ray: Ray) -> Thickness:
+    """Return tau of a user's medium, shape R or R + (channels,).
+
+    Error: estimated from panels against their halves, plus rounding. A detail smaller than `medium.detail` that no
+    node meets cannot be seen.
+    """
+    along = integrate_along(medium, ray, lambda local: np.zeros_like(local.sigma_t))
+    shape = ray.shape if medium.channels is None else (*ray.shape, medium.channels)
+    value, error = along.tau.reshape(shape), along.tau_error.reshape(shape)
+    return Thickness(value, np.zeros(shape), error, "adaptive Gauss-Legendre 16", SOURCE)
+
+
+def integrate_along(
+    medium: AnyMedium, ray: Ray, source: SourceTerm, channels: int | None = None, tolerance: float = TOLERANCE
+) -> Along:
+    """Return the optical thickness and the gain along the flattened rays, with estimated errors.
+
+    source    the radiance gained per metre, from the local coefficients
+    channels  how many channels the result has, the medium's own unless given
+    """
+    origin, direction = ray.origin.reshape(-1, 3), ray.direction.reshape(-1, 3)
+
+    def look(which: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        w = direction[which, None, :]
+        local = coefficients(medium, origin[which, None, :] + t[..., None] * w, w, channels)
+        return local.sigma_t, np.broadcast_to(source(local), local.sigma_t.shape)
+
+    def evaluate(which: np.ndarray, start: np.ndarray, width: np.ndarray) -> Panels:
+        blocks = [slice(i, i + BLOCK) for i in range(0, max(len(which), 1), BLOCK)]
+        found = [_panels(look, which[b], start[b], width[b]) for b in blocks]
+        return Panels(*(np.concatenate(columns) for columns in zip(*found, strict=True)))
+
+    count = len(origin)
+    panels = evaluate(*_first(medium, ray))
+    done = panels._replace(**{name: column[:0] for name, column in panels._asdict().items()})
+    for _ in range(ROUNDS):
+        if not len(panels.ray):
+            break
+        half = panels.width / 2
+        left = evaluate(panels.ray, panels.start, half)
+        right = evaluate(panels.ray, panels.start + half, panels.width - half)
+        with np.errstate(under="ignore"):
+            tau_off = np.abs(left.tau + right.tau - panels.tau) / 2
+            gain_off = np.abs(left.gain + np.exp(-left.tau) * right.gain - panels.gain) / 2
+        halves = [side._replace(tau_error=tau_off, gain_error=gain_off) for side in (left, right)]
+        everything = _join(done, *halves)
+        bad = _too_wrong(everything, count, tolerance)
+        panels = Panels(*(column[bad] for column in everything))
+        done = Panels(*(column[~bad] for column in everything))
+    return _compose(_join(done, panels), count, np.max(np.abs(origin), axis=-1, initial=0.0))
+
+
+def _first(medium: AnyMedium, ray: Ray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the panels to begin with: between breaks, and no wider than the detail the medium declares."""
+    edges = breakpoints(medium, ray)
+    widths = np.diff(edges, axis=-1)
+    which, column = np.nonzero(widths > 0)
+    start, width = edges[which, column], widths[which, column]
+    detail, pieces = getattr(medium, "detail", np.inf), FIRST if isinstance(medium, Procedural) else 1
+    parts = np.maximum(pieces, np.ceil(width / detail)).astype(int)
+    owner = np.repeat(np.arange(len(parts)), parts)
+    step = np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts)
+    share = width[owner] / parts[owner]
+    return which[owner], start[owner] + step * share, share
+
+
+def _panels(look: Look, which: np.ndarray, start: np.ndarray, width: np.ndarray) -> Panels:
+    sigma, q = (np.moveaxis(a, 1, -1) for a in look(which, start[:, None] + width[:, None] * NODES))  # nodes last
+    width_ = width.reshape(-1, *[1] * (sigma.ndim - 1))
+    with np.errstate(under="ignore", over="ignore"):
+        tau = (width_ * (sigma * WEIGHTS)).sum(axis=-1)
+        gain = (width_ * (np.exp(-width_ * (sigma @ RUNNING.T)) * q * WEIGHTS)).sum(axis=-1)
+    both = np.stack([sigma, q], axis=-2)
+    jumps = np.abs(np.diff(both, axis=-1)).sum(axis=-1)
+    none = np.zeros_like(tau)
+    return Panels(which, start, width, tau, gain, none, none, jumps, both[..., [0, -1]])
+
+
+def _join(*parts: Panels) -> Panels:
+    """Return the panels of all parts, in order along each ray."""
+    joined = Panels(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
+    order = np.lexsort((joined.start, joined.ray))
+    return Panels(*(column[order] for column in joined))
+
+
+def _too_wrong(panels: Panels, count: int, tolerance: float) -> np.ndarray:
+    """Return which panels hold more than their share of the error that their ray may have."""
+    rays, (first, number) = panels.ray, _starts(panels.ray, count)
+    before = np.cumsum(panels.tau, axis=0) - panels.tau
+    with np.errstate(under="ignore", invalid="ignore"):
+        seen = np.exp(-(before - before[first[rays]]))
+        totals = []
+        for x in (panels.tau, seen * panels.gain):
+            total = np.zeros((count, *x.shape[1:]))
+            np.add.at(total, rays, x)
+            totals.append(total)
+        share = tolerance / number[rays].reshape(-1, *[1] * (panels.tau.ndim - 1))
+        bad = panels.tau_error > np.maximum(share * totals[0][rays], 8 * EPS * panels.tau)
+        bad |= seen * panels.gain_error > np.maximum(share * totals[1][rays], 8 * EPS * seen * panels.gain)
+        # Nodes that see nothing through a thick panel would find no gain in it, and their halves none either.
+        glows = (panels.jumps[..., 1] > 0) | (panels.ends[..., 1, 0] > 0)
+        bad |= glows & (panels.tau > THICK) & (seen > UNSEEN)
+    bad = bad.reshape(len(bad), -1).any(axis=-1)
+    return bad & (number[rays] < PANELS) & (panels.width > 4 * EPS * (panels.start + panels.width))
+
+
+def _starts(rays: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return where each ray's panels begin in the sorted list, and how many it has."""
+    number = np.bincount(rays, minlength=count)
+    return np.minimum(np.cumsum(number) - number, max(len(rays) - 1, 0)), number
+
+
+def _compose(panels: Panels, count: int, reach: np.ndarray) -> Along:
+    """Compose the panels of each ray from the camera on, with the errors and what rounding adds.
+
+    A rounded position moves a value by at most the change of the coefficient there, so all of them together by the
+    sum of its changes along the ray times EPS (|origin| + t); four times that allows for changes across the ray.
+    """
+    first, number = _starts(panels.ray, count)
+    rank = np.arange(len(panels.ray)) - first[panels.ray]
+    tau, low, gain, tau_error, gain_error = (np.zeros((count, *panels.tau.shape[1:])) for _ in range(5))
+    last = np.zeros((count, *panels.ends.shape[1:-1]))
+    for step in range(number.max(initial=0)):
+        now = np.flatnonzero(rank == step)
+        r, p = panels.ray[now], Panels(*(column[now] for column in panels))
+        place = (4 * EPS * (reach[r] + p.start + p.width)).reshape(-1, *[1] * (p.jumps.ndim - 1))
+        moved = place * (p.jumps + np.abs(p.ends[..., 0] - last[r]))
+        with np.errstate(under="ignore"):
+            seen = np.exp(-tau[r])
+            gain[r] += seen * p.gain
+            gain_error[r] += seen * (p.gain_error + p.gain * (tau_error[r] + 16 * EPS) + moved[..., 1])
+            gain_error[r] += seen * p.gain * (p.tau_error + moved[..., 0])
+        tau[r], rest = two_sum(tau[r], p.tau)
+        low[r] += rest
+        tau_error[r] += p.tau_error + 8 * EPS * p.tau + moved[..., 0]
+        last[r] = p.ends[..., 1]
+    gain_error = gain_error + EPS * (1 + number.reshape(-1, *[1] * (tau.ndim - 1))) * gain / 2
+    return Along(tau + low, tau_error + TINY, gain, gain_error + TINY)

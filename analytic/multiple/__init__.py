@@ -1,0 +1,1 @@
+"""Multiple scattering with exact answers: slab, half space, ball, infinite medium, rod."""

@@ -1,0 +1,169 @@
+"""The ball that scatters isotropically, under a uniform sky of radiance 1: what it sends back and what a camera sees.
+
+Lengths are in mean free paths: sigma_t times metres.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from fogproof.analytic.arithmetic.error_free import EPS
+from fogproof.analytic.multiple.ball_solution import (
+    SOURCE,
+    BallSolution,
+    mean_transmittance,
+    scattered_share,
+    seen_along_chords,
+    solve_ball,
+    source_at,
+)
+from fogproof.analytic.multiple.isotropic_modes import isotropic_modes
+from fogproof.analytic.multiple.legendre_modes import complex_legendre_modes
+from fogproof.analytic.multiple.orders import taylor_coefficients
+from fogproof.analytic.multiple.scattering_arguments import checked_albedo, checked_count, checked_length
+from fogproof.analytic.multiple.slab_modes import quadrature
+from fogproof.contracts import Reference
+from fogproof.errors import InvalidValueError
+from fogproof.validate import require
+
+METHOD = "discrete ordinates in the equivalent slab"
+
+FINE, COARSE = 26, 20
+"""Half the number of nodes in angle of a solution, and of the one it is compared with; chords have three times as many."""
+
+COMPLEX = 14
+"""The same for complex albedos, whose modes cost more."""
+
+ROUNDING = 64 * EPS
+
+FAINT = 1e-30
+"""Albedo below which nothing scatters that could be seen."""
+
+Evaluate = Callable[[Any, BallSolution, np.ndarray, int], np.ndarray]
+"""(albedo, solution, places (v,), n) -> values (v,)."""
+
+
+def ball_albedo(albedo: Any, radius: Any) -> Reference:
+    """Return the share of the light entering a ball that leaves it again, scattered or not.
+
+    albedo  (...) single-scattering albedo in [0, 1]
+    radius  (...) in mean free paths, >= 0; broadcast against the albedo
+
+    The error is estimated from a coarser solution: about 2e-14.
+    Source: Davison & Sykes 1957, Neutron Transport Theory, section 7.
+    """
+    c, R = np.broadcast_arrays(checked_albedo(albedo), checked_length("radius", radius))
+    return _compare(c, R, np.zeros(c.shape), _albedo)
+
+
+def ball_source(albedo: Any, radius: Any, distance: Any) -> Reference:
+    """Return the scattered radiance source S = albedo times the mean radiance, at a distance from the centre.
+
+    albedo    (...) in [0, 1]
+    radius    (...) in mean free paths, >= 0
+    distance  (...) from the centre, in [0, radius]; all three broadcast
+
+    Radiance grows along a ray by S per mean free path. Error: as `ball_albedo`.
+    """
+    c, R, r = np.broadcast_arrays(
+        checked_albedo(albedo), checked_length("radius", radius), _inside("distance", distance, radius)
+    )
+    return _compare(c, R, r, _source)
+
+
+def ball_radiance(albedo: Any, radius: Any, impact: Any) -> Reference:
+    """Return the radiance along a ray that crosses the ball, background included.
+
+    albedo  (...) in [0, 1]
+    radius  (...) in mean free paths, >= 0
+    impact  (...) distance of the ray's line from the centre, in [0, radius]; all three broadcast
+
+    Error: as `ball_albedo`; the source is integrated along the chord by Gauss-Legendre quadrature.
+    """
+    c, R, p = np.broadcast_arrays(
+        checked_albedo(albedo), checked_length("radius", radius), _inside("impact", impact, radius)
+    )
+    return _compare(c, R, p, _radiance)
+
+
+def ball_albedo_orders(radius: float, count: int) -> Reference:
+    """Return the share of the light that leaves a ball after n scatterings at albedo 1, n = 0 … count: (count + 1,).
+
+    At albedo c the n-th order is c^n times that, and their sum over all n is `ball_albedo`.
+    """
+    return _orders(radius, np.zeros(()), count, _albedo, ball_albedo)
+
+
+def ball_radiance_orders(radius: float, impact: Any, count: int) -> Reference:
+    """Return `ball_radiance` order by order at albedo 1, n = 0 … count: (..., count + 1), for impact (...)."""
+    return _orders(
+        radius, _inside("impact", impact, radius), count, _radiance, lambda c, R: ball_radiance(c, R, impact)
+    )
+
+
+def _inside(name: str, value: Any, radius: Any) -> np.ndarray:
+    array = checked_length(name, value)
+    try:
+        require(name, array, array <= checked_length("radius", radius), "must be at most the radius")
+    except ValueError as error:
+        if isinstance(error, InvalidValueError):
+            raise
+        raise InvalidValueError(name, "must broadcast against the radius", array.shape) from None
+    return array
+
+
+def _albedo(c: Any, ball: BallSolution, places: np.ndarray, n: int) -> np.ndarray:
+    left = mean_transmittance(ball.radius) if abs(c) < FAINT else 1 - (1 - c) / c * scattered_share(ball)
+    return np.full(len(places), left)
+
+
+def _source(c: Any, ball: BallSolution, places: np.ndarray, n: int) -> np.ndarray:
+    return source_at(ball, places, ball.radius - places)
+
+
+def _radiance(c: Any, ball: BallSolution, places: np.ndarray, n: int) -> np.ndarray:
+    chord = 2 * np.sqrt((ball.radius - places) * (ball.radius + places))
+    return np.exp(-chord) + seen_along_chords(ball, places, 3 * n)
+
+
+def _compare(c: np.ndarray, R: np.ndarray, places: np.ndarray, evaluate: Evaluate) -> Reference:
+    """Return the values for every ball and place, and their errors from coarser solutions."""
+    value, error = np.empty(c.shape), np.empty(c.shape)
+    for one_c, one_R in set(zip(c.ravel().tolist(), R.ravel().tolist(), strict=True)):
+        here = (c == one_c) & (one_R == R)
+        with np.errstate(under="ignore"):
+            finest = _finest(one_R, places[here])
+            fine, coarse = (evaluate(one_c, _solve(one_c, one_R, finest, n), places[here], n) for n in (FINE, COARSE))
+        value[here], error[here] = fine, np.abs(fine - coarse) + ROUNDING
+    return Reference(value, error, METHOD, SOURCE)
+
+
+def _solve(c: float, radius: float, finest: float, n: int) -> BallSolution:
+    if c < FAINT or radius == 0:
+        return BallSolution(np.ones(1), np.full(1, c), radius)
+    return solve_ball(isotropic_modes(c, 1 - c, *quadrature(finest, n)), radius)
+
+
+def _finest(radius: float, places: np.ndarray) -> float:
+    """Return the smallest cosine that matters at these distances from the centre: of depths, and of rays grazing there."""
+    depth = radius - places
+    cosine = np.sqrt(depth * (radius + places)) / radius if radius > 0 else np.zeros_like(depth)
+    scale = np.minimum(depth, cosine)
+    return float(min(2 * radius, 10 * np.min(scale[scale > 0], initial=np.inf)))
+
+
+def _orders(radius: Any, places: np.ndarray, count: int, evaluate: Evaluate, known: Any) -> Reference:
+    R = checked_length("radius", radius)
+    if R.ndim or R == 0:
+        raise InvalidValueError("radius", "must be a single number > 0", radius)
+    nodes = quadrature(_finest(float(R), places.ravel()), COMPLEX)
+
+    def solution(albedos: np.ndarray) -> np.ndarray:
+        balls = [solve_ball(complex_legendre_modes(c, np.ones(1), *nodes), float(R)) for c in albedos]
+        found = [evaluate(c, ball, places.ravel(), COMPLEX) for c, ball in zip(albedos, balls, strict=True)]
+        return np.stack(found, axis=-1).reshape(*places.shape, -1)
+
+    return taylor_coefficients(solution, checked_count("count", count), known=lambda c: known(c, R), source=SOURCE)

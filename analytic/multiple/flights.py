@@ -1,0 +1,70 @@
+"""Where a photon is after n flights between collisions in an infinite medium: the first two moments, exactly.
+
+Flights have exponential lengths with the mean free path l, and each scattering has the mean cosine g.
+Source: Chandrasekhar 1943, Stochastic problems in physics and astronomy; Bohren & Clothiaux 2006, section 5.3.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from fogproof.analytic.arithmetic.error_free import EPS, TINY
+from fogproof.analytic.multiple.scattering_arguments import checked_count
+from fogproof.contracts import Reference
+from fogproof.validate import as_float_array, require
+
+METHOD = "closed form"
+SOURCE = "Chandrasekhar 1943, Stochastic problems in physics and astronomy"
+
+
+def mean_displacement(flights: int, g: Any, mean_free_path: Any = 1.0) -> Reference:
+    """Return the mean displacement along the first direction after n flights, l (1 + g + … + g^(n-1)) [m].
+
+    flights         n >= 0, a whole number
+    g               (...) mean cosine of the phase function, in [-1, 1]
+    mean_free_path  (...) l [m], > 0; broadcast against g
+
+    Error: (n + 8) eps, relative to the sum of |g|^k.
+    """
+    n, g, length = _checked(flights, g, mean_free_path)
+    value, size = length * _geometric(n, g), length * _geometric(n, np.abs(g))
+    return Reference(value, (n + 8) * EPS * size + TINY, METHOD, SOURCE)
+
+
+def mean_square_displacement(flights: int, g: Any, mean_free_path: Any = 1.0) -> Reference:
+    """Return the mean square displacement after n flights, 2 l^2 sum_(k=0)^(n-1) (n - k) g^k [m^2].
+
+    Arguments as in `mean_displacement`; in closed form 2 l^2 [n/(1 - g) - g (1 - g^n)/(1 - g)^2]. Error: likewise.
+    """
+    n, g, length = _checked(flights, g, mean_free_path)
+
+    def weighted(x: np.ndarray) -> np.ndarray:
+        total, partial = np.zeros_like(x), np.zeros_like(x)
+        for _ in range(n):  # sum_(m=1)^n (1 + x + … + x^(m-1))
+            partial = 1 + x * partial
+            total = total + partial
+        return total
+
+    square = 2 * length * length
+    return Reference(square * weighted(g), 2 * (n + 8) * EPS * square * weighted(np.abs(g)) + TINY, METHOD, SOURCE)
+
+
+def _geometric(n: int, x: np.ndarray) -> np.ndarray:
+    total = np.zeros_like(x)
+    for _ in range(n):
+        total = 1 + x * total
+    return total
+
+
+def _checked(flights: Any, g: Any, mean_free_path: Any) -> tuple[int, np.ndarray, np.ndarray]:
+    n, g, length = (
+        checked_count("flights", flights),
+        as_float_array("g", g),
+        as_float_array("mean_free_path", mean_free_path),
+    )
+    require("g", g, np.abs(g) <= 1, "must lie in [-1, 1]", "it is the mean cosine of the phase function")
+    require("mean_free_path", length, np.isfinite(length) & (length > 0), "must be finite and > 0 [m]")
+    g, length = np.broadcast_arrays(g, length)
+    return n, g, length

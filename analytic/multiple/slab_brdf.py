@@ -1,0 +1,95 @@
+"""Where a slab sends what it reflects: the X and Y functions of isotropic scattering.
+
+Lit by a uniform sky on one side only, a slab absorbs E(mu) = 1 - R - T of what comes from mu, and F = 1 - R + T. Both are X and
+Y in disguise: X - Y = E(mu)/E(0) and X + Y = F(mu)/F(0), and at grazing angles the radiance that leaves is the source at
+the surface. As nothing is absorbed any more, E(mu)/E(0) tends to a limit, which is computed as one: all of E is of the
+order of the smallest k^2.
+Source: Chandrasekhar 1960, Radiative Transfer, chapter 8 and section 62.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from fogproof.analytic.arithmetic.error_free import EPS, TINY
+from fogproof.analytic.multiple.isotropic_modes import isotropic_modes
+from fogproof.analytic.multiple.scattering_arguments import checked_albedo, checked_cosine, checked_length
+from fogproof.analytic.multiple.slab_modes import Modes, amplitudes, quadrature, scattered
+from fogproof.contracts import Reference
+
+METHOD = "discrete ordinates"
+SOURCE = "Chandrasekhar 1960, Radiative Transfer, chapter 8"
+
+FINE, COARSE = 20, 16
+"""Half the number of nodes of a solution, and of the one it is compared with."""
+
+RELATIVE_ROUNDING = 1e-13
+
+MANY = 0.5
+"""Albedo from which on the mode of the smallest k is taken out of E."""
+
+
+def slab_brdf(albedo: Any, tau: Any, mu0: Any, mu: Any) -> Reference:
+    """Return the reflectance distribution of a slab that scatters isotropically [1/sr]: radiance per irradiance.
+
+    albedo   (...) in [0, 1]
+    tau      (...) optical thickness >= 0
+    mu0, mu  (...) cosines of the beam and of the view to the normal, in (0, 1]; all four broadcast
+
+    It is c (X(mu0) X(mu) - Y(mu0) Y(mu))/(4 pi (mu0 + mu)). The error is estimated from a coarser solution: about
+    1e-13 + 4 eps tau, relative.
+    Source: Chandrasekhar 1960, Radiative Transfer, section 62.
+    """
+    checked = checked_albedo(albedo), checked_length("tau", tau), checked_cosine("mu0", mu0), checked_cosine("mu", mu)
+    arrays = np.broadcast_arrays(*checked)
+    c, b, ins, outs = (x.ravel() for x in arrays)
+    value, error = np.zeros(c.shape), np.zeros(c.shape)
+    with np.errstate(under="ignore", over="ignore", divide="ignore"):
+        for one_c, one_b in set(zip(c.tolist(), b.tolist(), strict=True)):
+            here = (c == one_c) & (b == one_b)
+            if one_c == 0 or one_b == 0:
+                continue
+            fine, coarse = (_brdf(one_c, one_b, ins[here], outs[here], n) for n in (FINE, COARSE))
+            value[here] = fine
+            error[here] = np.abs(fine - coarse) + (RELATIVE_ROUNDING + 4 * EPS * one_b) * fine + TINY
+    return Reference(value.reshape(arrays[0].shape), error.reshape(arrays[0].shape), METHOD, SOURCE)
+
+
+def _brdf(c: float, tau: float, mu0: np.ndarray, mu: np.ndarray, n: int) -> np.ndarray:
+    both = np.concatenate([mu0, mu])
+    nodes = quadrature(min(tau, 10 * float(np.min(both))), n)
+    modes = isotropic_modes(max(c, EPS**2), 1 - c, *nodes)
+    difference, total = _difference(modes, c, tau, both), _total(modes, tau, both)
+    (d0, d), (t0, t) = np.split(difference, 2), np.split(total, 2)
+    return c * (d0 * t + t0 * d) / (8 * np.pi * (mu0 + mu))
+
+
+def _total(modes: Modes, tau: float, mu: np.ndarray) -> np.ndarray:
+    """Return X + Y."""
+    half = tau / 2
+    amplitude = amplitudes(modes, half, "odd", np.full(len(modes.mu), 0.5))
+    grazing = np.tanh(modes.k * half) / np.where(modes.k > 0, modes.k, 1.0) + np.where(modes.k > 0, 0.0, half)
+    f = 1 + np.exp(-tau / mu) - 2 * scattered(modes, half, "odd", amplitude, mu)
+    return f / (1 - grazing @ amplitude)
+
+
+def _difference(modes: Modes, c: float, tau: float, mu: np.ndarray) -> np.ndarray:
+    """Return X - Y."""
+    half = tau / 2
+    if c < MANY:
+        amplitude = amplitudes(modes, half, "even", np.full(len(modes.mu), 0.5))
+        e = -np.expm1(-tau / mu) - 2 * scattered(modes, half, "even", amplitude, mu)
+        return e / (1 - np.sum(amplitude))
+    # The amplitudes are those of the smallest k alone plus k^2 times these; E is k^2 times what follows.
+    k = modes.k[-1]
+    t = np.tanh(k * half) / k if k * half > 1e-8 else half
+
+    def part(x: np.ndarray) -> np.ndarray:
+        return x / ((1 - k * x) * (1 + k * x))
+
+    amplitude = amplitudes(modes, half, "even", part(modes.mu) * (modes.mu + t))
+    through = np.exp(-tau / mu)
+    e = part(mu) * (t * (1 + through) - mu * (1 - through)) + scattered(modes, half, "even", amplitude, mu)
+    return e / (np.sum(amplitude) / 2)

@@ -1,0 +1,63 @@
+"""The slab, one scattering order at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from fogproof.analytic.multiple.legendre_modes import complex_legendre_modes
+from fogproof.analytic.multiple.legendre_moments import legendre_moments
+from fogproof.analytic.multiple.orders import taylor_coefficients
+from fogproof.analytic.multiple.scattering_arguments import checked_cosine, checked_count, checked_length
+from fogproof.analytic.multiple.slab import slab_reflectance, slab_transmittance
+from fogproof.analytic.multiple.slab_modes import SOURCE
+from fogproof.analytic.multiple.slab_solution import Leaving, leaving_slab, nodes_inside
+from fogproof.contracts import Reference
+from fogproof.errors import InvalidValueError
+from fogproof.scene.phase_functions import Isotropic, PhaseFunction
+
+FEWEST_NODES, MOST_NODES = 14, 32
+"""Half the number of nodes: complex modes cost more than real ones."""
+
+NEGLIGIBLE = 1e-7
+"""Legendre moment below which the moments are cut off."""
+
+
+def slab_reflectance_orders(tau: float, mu0: Any, count: int, phase: PhaseFunction | None = None) -> Reference:
+    """Return the share R_n of a beam that a slab reflects after n scatterings at albedo 1, n = 0 … count: (..., count + 1).
+
+    tau    optical thickness >= 0, one number
+    mu0    (...) cosine of the beam to the normal, in (0, 1]
+    phase  isotropic unless given
+
+    At albedo c the n-th order is c^n R_n, and their sum over all n is `slab_reflectance`.
+    """
+    return _orders(tau, mu0, count, phase, lambda leaving: leaving.reflected, slab_reflectance)
+
+
+def slab_transmittance_orders(tau: float, mu0: Any, count: int, phase: PhaseFunction | None = None) -> Reference:
+    """Return the share of a beam that passes a slab after n scatterings at albedo 1, see `slab_reflectance_orders`."""
+    return _orders(tau, mu0, count, phase, lambda leaving: leaving.transmitted, slab_transmittance)
+
+
+def _orders(tau: Any, mu0: Any, count: Any, phase: Any, pick: Callable[[Leaving], np.ndarray], real: Any) -> Reference:
+    b = checked_length("tau", tau)
+    if b.ndim:
+        raise InvalidValueError("tau", "must be a single number", tau)
+    mu0 = checked_cosine("mu0", mu0)
+    chi = legendre_moments(phase or Isotropic(), 2 * MOST_NODES)
+    n = int(np.clip(1 + np.flatnonzero(np.abs(chi) > NEGLIGIBLE)[-1] // 2, FEWEST_NODES, MOST_NODES))
+    nodes = nodes_inside(min(float(b), 10 * float(np.min(mu0))), n, 1.0)
+
+    def at(c: complex) -> np.ndarray:
+        modes = complex_legendre_modes(c, chi[: 2 * n], nodes.mu, nodes.w) if b > 0 else None
+        return pick(leaving_slab(modes, nodes, float(b), mu0.ravel(), 1.0))
+
+    def solution(albedos: np.ndarray) -> np.ndarray:
+        return np.stack([at(c) for c in albedos], axis=-1).reshape(*mu0.shape, -1)
+
+    return taylor_coefficients(
+        solution, checked_count("count", count), known=lambda c: real(c, b, mu0, phase), source=SOURCE
+    )

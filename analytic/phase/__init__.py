@@ -1,0 +1,1 @@
+"""Phase functions: density, distribution, quantile, mean cosine."""

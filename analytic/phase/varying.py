@@ -1,0 +1,62 @@
+"""Phase functions that vary in space, at a place."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from fogproof.analytic.arithmetic import double_double as dd
+from fogproof.analytic.arithmetic.error_free import EPS, two_sum
+from fogproof.analytic.phase.functions import phase_pdf
+from fogproof.contracts import Reference
+from fogproof.errors import InvalidValueError
+from fogproof.scene import Ramp, VaryingPhase
+from fogproof.scene.varying_phase import AnyPhase
+from fogproof.validate import as_float_array, points, require
+
+
+def phase_pdf_at(phase: AnyPhase, x: Any, mu: Any) -> Reference:
+    """Return f_p(x, mu) [1/sr] of a phase function that may vary in space.
+
+    x   (..., 3) points [m]
+    mu  (...) forward cosines, broadcast against the points
+
+    The value is (1 - q(x)) first(mu) + q(x) second(mu), normalised at every x because q lies in [0, 1].
+    Error: that of the two phase functions, plus 4 EPS relative; what a user's function returns for q counts as exact.
+    Source: elementary; scattering coefficients of two populations of particles add.
+    """
+    x, mu = points("x", x), as_float_array("mu", mu)
+    shape = np.broadcast_shapes(x.shape[:-1], mu.shape)
+    if not isinstance(phase, VaryingPhase):
+        same = phase_pdf(phase, mu)
+        value, error = np.broadcast_to(same.value, shape), np.broadcast_to(same.error, shape)
+        return Reference(value, error, same.method, same.source)
+    share = share_at(phase, x)
+    first, second = phase_pdf(phase.first, mu), phase_pdf(phase.second, mu)
+    value = (1 - share) * first.value + share * second.value
+    error = (1 - share) * first.error + share * second.error + 4 * EPS * value
+    if isinstance(phase.share, Ramp):
+        error = error + EPS * share * np.abs(first.value - second.value)
+    return Reference(value, error, f"blend of {first.method} and {second.method}", f"{first.source}; {second.source}")
+
+
+def share_at(phase: VaryingPhase, x: Any) -> np.ndarray:
+    """Return the share q(x) in [0, 1] of the second phase function at points (..., 3) -> (...).
+
+    A `Ramp` has (x - start) . (end - start) / |end - start|^2, cut to [0, 1], within 1 EPS relative.
+    """
+    x = points("x", x)
+    if not isinstance(phase.share, Ramp):
+        share = as_float_array("share", phase.share(x))
+        if share.shape != x.shape[:-1]:
+            raise InvalidValueError("share", f"must return an array of shape {list(x.shape[:-1])}", list(share.shape))
+        require("share", share, (share >= 0) & (share <= 1), "must return numbers in [0, 1]")
+        return share
+    start, end = phase.share.start, phase.share.end
+    above, whole = dd.pair(np.zeros(x.shape[:-1])), dd.pair(0.0)
+    for i in range(3):
+        way = two_sum(end[i], -start[i])
+        above = dd.add(above, dd.times(two_sum(x[..., i], -start[i]), way))
+        whole = dd.add(whole, dd.times(way, way))
+    return np.clip(dd.divide(above, whole)[0], 0.0, 1.0)

@@ -1,0 +1,1 @@
+"""Enclosures by ball arithmetic, and the golden tables made with them."""

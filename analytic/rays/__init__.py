@@ -1,0 +1,1 @@
+"""What a ray sees of a medium without scattering: transmittance, free paths, fog, emission."""

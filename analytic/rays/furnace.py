@@ -1,0 +1,55 @@
+"""The furnaces: closed rooms in which every radiance is known without solving anything.
+
+White furnace: a medium that absorbs nothing, in an environment of radiance L, shows L in every direction, whatever its
+extinction, shape and phase function: what is scattered out is scattered in. Thermal furnace: a medium that also emits
+L_e = L shows L for every albedo (Kirchhoff). Truncated paths, missing terms and unnormalised phase functions all show.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from fogproof.analytic.geometry.rays import channels_of
+from fogproof.contracts import Reference
+from fogproof.errors import InvalidValueError
+from fogproof.scene import AnyMedium, Medium, Ray
+from fogproof.validate import nonnegative_channels
+
+SOURCE = "Kirchhoff 1860; Chandrasekhar 1960, Radiative Transfer, section 7"
+
+
+def white_furnace(medium: AnyMedium, ray: Ray, radiance: Any = 1.0) -> Reference:
+    """Return what every ray sees in a white furnace of that radiance [W/(m^2 sr)], exactly.
+
+    medium  of albedo 1 and without emission; its shape and phase function are of no account
+    """
+    _require(medium, "albedo", 1.0, "in a white furnace: nothing may be absorbed")
+    _require(medium, "emission", 0.0, "in a white furnace; with emission it is a thermal_furnace")
+    return _constant(medium, ray, radiance, "white furnace")
+
+
+def thermal_furnace(medium: AnyMedium, ray: Ray, radiance: Any = 1.0) -> Reference:
+    """Return what every ray sees in a thermal furnace of that radiance [W/(m^2 sr)], exactly.
+
+    medium  of any albedo, whose emission is the radiance of the environment
+    """
+    _require(medium, "emission", np.asarray(nonnegative_channels("radiance", radiance, "W/(m^2 sr)")), "the radiance")
+    return _constant(medium, ray, radiance, "thermal furnace")
+
+
+def _require(medium: Any, name: str, wanted: Any, why: str) -> None:
+    channels_of(medium)
+    value = getattr(medium, name)
+    if name == "albedo" and isinstance(medium, Medium):
+        value = np.where(medium.sigma_t > 0, medium.albedo, 1.0)
+    if callable(value) or not np.all(np.equal(value, wanted)):
+        raise InvalidValueError(name, f"must be {wanted} {why}", value)
+
+
+def _constant(medium: AnyMedium, ray: Ray, radiance: Any, method: str) -> Reference:
+    radiance = nonnegative_channels("radiance", radiance, "W/(m^2 sr)")
+    channels = channels_of(medium, radiance=radiance)
+    shape = ray.shape if channels is None else (*ray.shape, channels)
+    return Reference(np.full(shape, radiance), np.zeros(shape), method, SOURCE)

@@ -1,0 +1,1 @@
+"""The Rayleigh sky and its colours."""

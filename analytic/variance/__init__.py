@@ -1,0 +1,1 @@
+"""Second moments: the exact variance and cost of the usual estimators."""

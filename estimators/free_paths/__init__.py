@@ -1,0 +1,1 @@
+"""Free paths and transmittance where the optical depth has a closed form."""

@@ -1,0 +1,1 @@
+"""Loops that branch per ray, compiled by numba when first used."""

@@ -1,0 +1,1 @@
+"""Path tracers and random walks."""

@@ -1,0 +1,1 @@
+"""Trackers: delta, ratio, residual ratio, regular and marched."""

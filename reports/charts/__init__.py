@@ -1,0 +1,1 @@
+"""Charts: shapes on a sheet, written as SVG and PNG."""

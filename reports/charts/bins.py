@@ -1,0 +1,80 @@
+"""Observed shares against expected probabilities of the bins of one coordinate."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fogproof.errors import InvalidValueError
+from fogproof.reports.charts.axes import DASHED, Axes, Key, Scale, legend
+from fogproof.reports.charts.colours import EXPECTED, OBSERVED
+from fogproof.reports.charts.sheet import Sheet
+from fogproof.reports.text import label
+
+
+@dataclass(frozen=True)
+class Bins:
+    """`edges` (n + 1,) never fall and may end in +-inf; `expected`, `observed` (n,) are probabilities and shares."""
+
+    edges: tuple[float, ...]
+    label: str
+    expected: tuple[float, ...]
+    observed: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        n = len(self.edges) - 1
+        for name in ("expected", "observed"):
+            got = len(getattr(self, name))
+            if n < 1 or got != n:
+                raise InvalidValueError(name, f"must have one number for each of the {max(n, 0)} bins", got)
+
+    def draw(self, sheet: Sheet) -> str:
+        """Draw densities above and the relative misfit of each bin below.
+
+        An open outer bin is drawn as wide as its neighbour. Bins without width (atoms) leave no density to draw: then
+        the shares stand over the number of the bin.
+        """
+        edges, opened = closed(np.array(self.edges))
+        expected, observed = np.array(self.expected), np.array(self.observed)
+        width = np.diff(edges)
+        if np.all(np.isfinite(width) & (width > 0)):
+            across = label(self.label) + (" (the outermost bin is open)" if opened else "")
+            what = "density"
+        else:
+            edges, width = np.arange(edges.size) - 0.5, np.ones(expected.size)
+            across, what = f"number of the bin of {label(self.label)}", "share"
+        with np.errstate(divide="ignore", invalid="ignore"):
+            misfit = np.where(expected > 0, 100 * (observed / expected - 1), np.nan)
+        keys = [Key("observed", OBSERVED, "area"), Key("expected", EXPECTED, dash=DASHED)]
+        left, right = 76.0, sheet.width - 90
+        top = legend(sheet, keys, left, 0, right) + 4
+        x, middle = Scale(float(edges[0]), float(edges[-1])), 0.62 * sheet.height
+        high = np.append(observed, expected) / np.append(width, width)
+        high = high[np.isfinite(high)]
+        upper = Axes(sheet, (left, top, right, middle - top - 14), x, Scale(0, 1.06 * high.max(initial=0) or 1.0))
+        upper.frame(up=what)
+        upper.stairs(observed / width, edges, OBSERVED, fill=True)
+        upper.stairs(expected / width, edges, EXPECTED, DASHED)
+        reach = np.abs(misfit[np.isfinite(misfit)]).max(initial=0) * 1.15 or 1.0
+        lower = Axes(sheet, (left, middle, right, sheet.height - middle - 50), x, Scale(-reach, reach))
+        lower.frame(across, "misfit [%]", ticks=(6, 4))
+        lower.line(edges[[0, -1]], [0, 0], EXPECTED, DASHED)
+        lower.stairs(misfit, edges, OBSERVED)
+        worst = int(np.argmax(np.abs(observed - expected)))
+        return (
+            f"Observed shares of {expected.size} bins of {label(self.label)} against their probabilities; the largest "
+            f"difference is {observed[worst] - expected[worst]:+.2g} in the bin from {self.edges[worst]:.4g} to "
+            f"{self.edges[worst + 1]:.4g} (expected {expected[worst]:.3g})."
+        )
+
+
+def closed(edges: np.ndarray) -> tuple[np.ndarray, bool]:
+    """Return `edges` with an infinite outer one moved to a bin's width from its neighbour, and if there was one."""
+    edges = edges.copy()
+    ends = [(0, 1, 2), (-1, -2, -3)]
+    opened = [end for end in ends if np.isinf(edges[end[0]])]
+    for end, first, second in opened:
+        step = edges[first] - edges[second] if edges.size > 2 and np.isfinite(edges[second]) else 0.0
+        edges[end] = edges[first] + (step or np.sign(edges[end]))
+    return edges, bool(opened)

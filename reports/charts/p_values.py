@@ -1,0 +1,82 @@
+"""All p-values that are uniform for right subjects: their histogram, and one by one against the uniform distribution."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fogproof.reports.charts.axes import DASHED, Axes, Key, Marker, Scale, legend
+from fogproof.reports.charts.colours import EXPECTED, GRID, OBSERVED
+from fogproof.reports.charts.sheet import Sheet
+
+
+@dataclass(frozen=True)
+class PValues:
+    """`p` are exact p-values of findings, in any order."""
+
+    p: tuple[float, ...]
+
+    def draw(self, sheet: Sheet) -> str:
+        """Draw sorted p-values over their expectation i/(n + 1), both logarithmic, with 99.9% of each rank's range.
+
+        The i-th smallest of n uniform numbers follows the Beta(i, n - i + 1) distribution.
+        """
+        from scipy.special import betaincinv
+
+        n = len(self.p)
+        rank = np.arange(1, n + 1)
+        middle = rank / (n + 1)
+        low, high = (betaincinv(rank, n - rank + 1, q) for q in (0.0005, 0.9995))
+        floor = low[0] / 100
+        p = np.sort(self.p)
+        inside, tiny = (p >= low) & (p <= high), p < floor
+        keys = [Key("99.9% of right subjects", GRID, "area"), Key("uniform", EXPECTED, dash=DASHED)]
+        marks: list[tuple[np.ndarray, Marker, str]] = [
+            (inside, "dot", "observed"),
+            (~inside & ~tiny, "cross", "outside"),
+            (tiny, "triangle", f"below {floor:.0e}"),
+        ]
+        marks = [one for one in marks if one[0].any()]
+        keys += [Key(name, OBSERVED, marker) for _, marker, name in marks]
+        top = legend(sheet, keys, 20, 0, sheet.width - 20) + 4
+        x, y = Scale(middle[0] / 1.3, 1.1, True), Scale(floor / 2, 1.5, True)
+        axes = Axes(sheet, (78, top, sheet.width - 92, sheet.height - top - 50), x, y)
+        axes.frame("expected p-value of this rank", "p-value")
+        axes.band(middle, low, high, GRID, 1)
+        axes.line(middle, middle, EXPECTED, DASHED)
+        for where, marker, _ in marks:
+            axes.points(middle[where], np.maximum(p[where], floor), OBSERVED, marker, 3 if marker == "dot" else 5)
+        return (
+            f"{n} p-values that are uniform for right subjects, sorted, against their expectation; the smallest is "
+            f"{min(self.p):.2g}; {int(np.sum(~inside))} lie outside the range that holds each with probability 99.9%."
+        )
+
+
+@dataclass(frozen=True)
+class PValueHistogram:
+    """How many of the exact p-values fall into each twentieth of [0, 1]."""
+
+    p: tuple[float, ...]
+    bins: int = 20
+
+    def draw(self, sheet: Sheet) -> str:
+        """Draw the counts, and the range that holds each with probability 99.9% if all subjects are right: binomial."""
+        from scipy.special import bdtrik
+
+        n, share = len(self.p), 1 / self.bins
+        counts, edges = np.histogram(self.p, self.bins, (0.0, 1.0))
+        low, high = (float(np.ceil(max(bdtrik(q, n, share), 0.0))) for q in (0.0005, 0.9995))
+        keys = [Key("observed", OBSERVED, "area"), Key("expected", EXPECTED, dash=DASHED)]
+        top = legend(sheet, [*keys, Key("99.9% of right subjects", GRID, "area")], 20, 0, sheet.width - 20) + 4
+        y = Scale(0, 1.08 * max(high, float(counts.max()), 1.0))
+        axes = Axes(sheet, (64, top, sheet.width - 80, sheet.height - top - 50), Scale(0, 1), y)
+        axes.frame("p-value", "findings")
+        axes.band([0, 1], [low, low], [high, high], GRID, 1)
+        axes.stairs(counts, edges, OBSERVED, fill=True)
+        axes.line([0, 1], [n * share, n * share], EXPECTED, DASHED)
+        outside = int(np.sum((counts < low) | (counts > high)))
+        return (
+            f"Histogram of {n} p-values that are uniform for right subjects: {n * share:.1f} are expected in each of {self.bins} "
+            f"bins, {counts.min()} to {counts.max()} are there; {outside} bins lie outside the range of 99.9%."
+        )

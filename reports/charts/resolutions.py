@@ -1,0 +1,69 @@
+"""What the passes could not have missed: the smallest error each would have caught."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fogproof.reports.charts.axes import Axes, Key, Marker, Scale, legend, spanning
+from fogproof.reports.charts.colours import EXPECTED, OBSERVED, THIRD
+from fogproof.reports.charts.sheet import Sheet
+from fogproof.reports.text import label
+
+_NAMED = 48
+
+
+@dataclass(frozen=True)
+class Resolutions:
+    """One (case name, kind of error, smallest error caught) for each pass that states one."""
+
+    passes: tuple[tuple[str, str, float], ...]
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """Width and height [px]: a line for each named case, or a broader one for each kind."""
+        if len(self.passes) <= _NAMED:
+            return 560.0, 90.0 + 20 * len(self.passes) + 20 * len(self._kinds)
+        return 560.0, 90.0 + 56 * len(self._kinds)
+
+    @property
+    def _kinds(self) -> list[str]:
+        return sorted({kind for _, kind, _ in self.passes})
+
+    def draw(self, sheet: Sheet) -> str:
+        """Draw one mark a pass, sorted by kind and value: a line each while their names fit, otherwise a slope for each kind."""
+        kinds = self._kinds
+        rows = sorted(self.passes, key=lambda row: (kinds.index(row[1]), row[2]))
+        values = [value for _, _, value in rows]
+        named = len(rows) <= _NAMED
+        looks: list[tuple[str, Marker]] = [
+            (OBSERVED, "dot"),
+            (EXPECTED, "square"),
+            (THIRD, "triangle"),
+            (OBSERVED, "cross"),
+            (EXPECTED, "diamond"),
+            (THIRD, "cross"),
+        ]
+        chosen = {kind: looks[index % len(looks)] for index, kind in enumerate(kinds)}
+        counts = [sum(its == kind for _, its, _ in rows) for kind in kinds]
+        keys = [Key(label(kind, 60), *chosen[kind]) for kind in kinds]
+        top = (legend(sheet, keys, 8, 0, sheet.width - 8) if named else 4.0) + 4
+        left = 0.42 * sheet.width
+        y = Scale(len(rows), -1) if named else Scale(len(kinds) - 0.5, -0.5)
+        axes = Axes(sheet, (left, top, sheet.width - left - 20, sheet.height - top - 50), spanning(values, log=True), y)
+        axes.frame("smallest error that would have been caught", ticks=(6, 0))
+        for number, (kind, count) in enumerate(zip(kinds, counts, strict=True)):
+            at = np.array([(value, y) for y, (_, its, value) in enumerate(rows) if its == kind])
+            slope = number + 0.35 - 0.7 * (np.arange(count) + 0.5) / count
+            axes.points(at[:, 0], at[:, 1] if named else slope, *chosen[kind])
+        if named:
+            axes.names([label(name, 30) for name, _, _ in rows], np.arange(len(rows)))
+        else:
+            axes.names(
+                [f"{label(kind, 30)} ({n})" for kind, n in zip(kinds, counts, strict=True)], np.arange(len(kinds))
+            )
+        named_kinds = ", ".join(label(kind) for kind in kinds)
+        return (
+            f"{len(rows)} passes: errors above {min(values):.2g} to {max(values):.2g} ({named_kinds}) would have shown."
+        )

@@ -1,0 +1,1 @@
+"""Pages: a run, a study, a comparison, in HTML."""

@@ -1,0 +1,123 @@
+"""Two runs on one page: what came out worse, what was mended, what is new or gone, and what it costs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf
+from pathlib import Path
+from typing import Any
+
+from fogproof.reports.charts.before_after import BeforeAfter
+from fogproof.reports.charts.pictures import Picture, render
+from fogproof.reports.files import write_file
+from fogproof.reports.pages.templates import cases as some_cases
+from fogproof.reports.pages.templates import fill
+from fogproof.reports.records.runs import Case, Run
+
+CHANGES = ("worse", "changed", "gone", "mended", "new", "same")
+"""What may have become of a case, from what needs attention to what does not."""
+
+_WRONG = {"rejected", "surprise", "error"}
+
+
+@dataclass(frozen=True)
+class Pair:
+    """One case in two runs; None in the run that lacks it."""
+
+    name: str
+    before: Case | None
+    after: Case | None
+
+    @property
+    def change(self) -> str:
+        """One of `CHANGES`: worse and mended are between right and wrong, changed is any other change of status."""
+        if self.before is None:
+            return "worse" if self.wrong else "new"
+        if self.after is None:
+            return "gone"
+        if self.wrong != (self.before.status in _WRONG):
+            return "worse" if self.wrong else "mended"
+        return "same" if self.before.status == self.after.status else "changed"
+
+    @property
+    def wrong(self) -> bool:
+        """Whether the newer run has the case, and has it wrong."""
+        return self.after is not None and self.after.status in _WRONG
+
+
+def pair_cases(before: Run, after: Run) -> list[Pair]:
+    """Return the cases of both runs, matched by name, what needs attention first."""
+    old, new = ({case.name: case for case in run.cases} for run in (before, after))
+    pairs = [Pair(name, old.get(name), new.get(name)) for name in old | new]
+    return sorted(pairs, key=lambda pair: (CHANGES.index(pair.change), not pair.wrong))
+
+
+def worse(before: Run, after: Run) -> bool:
+    """Return whether a case came out worse in the newer run."""
+    return any(pair.change == "worse" for pair in pair_cases(before, after))
+
+
+def write_comparison_page(before: Run, after: Run, folder: Path) -> Path:
+    """Write `folder/comparison.html` and its figures; return the page's path."""
+    pairs = pair_cases(before, after)
+    figures = _figures(pairs)
+    for picture in figures:
+        picture.save(folder / "figures")
+    counts = {change: sum(pair.change == change for pair in pairs) for change in CHANGES}
+    still = sum(pair.wrong and pair.change != "worse" for pair in pairs)
+    page = fill(
+        "comparison.html",
+        kind="comparison",
+        before=before,
+        after=after,
+        pairs=pairs,
+        counts=counts,
+        settings=_settings(before, after),
+        figures=figures,
+        headline=headline(counts, still, len(pairs)),
+        tone="bad" if counts["worse"] or still else "care" if counts["changed"] or counts["gone"] else "good",
+    )
+    return write_file(folder / "comparison.html", page)
+
+
+def headline(counts: dict[str, int], still: int, total: int) -> tuple[str, str]:
+    """Return what changed in words: a sentence that stands alone, and the counts behind it."""
+    if counts["worse"]:
+        first = f"{some_cases(counts['worse'])} came out worse"
+    elif still:
+        first = f"Nothing came out worse, but {some_cases(still)} {'is' if still == 1 else 'are'} wrong as before"
+    elif counts["same"] == total:
+        first = "Every case came out as before"
+    else:
+        first = "Nothing came out worse"
+    words = {"changed": "otherwise changed", "same": "as before"}
+    listed = [f"{counts[change]} {words.get(change, change)}" for change in CHANGES if counts[change]]
+    return first, ", ".join(listed) or "Both records are empty"
+
+
+def _settings(before: Run, after: Run) -> list[tuple[str, Any, Any]]:
+    """Return (name, before, after) of what could explain a change, what differs first."""
+    names = ("command", "seed", "alpha", "fogproof", "started", "seconds", "exit_code")
+    old, new = ({name: getattr(run, name) for name in names} | run.environment for run in (before, after))
+    rows = [(name, old.get(name), new.get(name)) for name in old | new]
+    return sorted(rows, key=lambda row: row[1] == row[2])
+
+
+def _figures(pairs: list[Pair]) -> list[Picture]:
+    def resolution(case: Case) -> float:
+        found = case.verdict.resolution if case.verdict else None
+        return found.value if found else 0.0
+
+    def kind(case: Case) -> str:
+        return case.verdict.resolution.kind if case.verdict and case.verdict.resolution else ""
+
+    both = [(pair.name, pair.before, pair.after) for pair in pairs if pair.before and pair.after]
+    seconds = [(name, a.seconds, b.seconds) for name, a, b in both if a.verdict and b.verdict]
+    caught = [(name, resolution(a), resolution(b)) for name, a, b in both if kind(a) == kind(b)]
+    figures = []
+    for stem, what, rows in (("seconds", "Time [s]", seconds), ("resolution", "Smallest error caught", caught)):
+        usable = [row for row in rows if 0 < row[1] < inf and 0 < row[2] < inf]
+        if usable:
+            drawing = BeforeAfter(what, *(tuple(column) for column in zip(*usable, strict=True)))
+            figures.append(render(drawing, f"comparison-{stem}", (560, 440)))
+    return figures

@@ -1,0 +1,156 @@
+"""The page of a study: the answers first, then how fast each estimator of each scene nears the oracle's value."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from math import inf, nan
+from pathlib import Path
+
+from fogproof.reports.charts.convergence import Convergence, Curve
+from fogproof.reports.charts.pictures import Picture, render
+from fogproof.reports.files import write_file
+from fogproof.reports.pages.page import STATUSES
+from fogproof.reports.pages.summaries import needs
+from fogproof.reports.pages.templates import fill
+from fogproof.reports.records.runs import Case, Status
+from fogproof.reports.records.studies import Entry, SceneRecord, Study, as_run
+from fogproof.reports.text import file_stem
+
+
+@dataclass(frozen=True)
+class Row:
+    """An estimator as the page shows it: its entry and its verdict."""
+
+    entry: Entry
+    case: Case
+
+
+@dataclass(frozen=True)
+class SceneShown:
+    """A scene with its figures (title, picture), and its estimators, the best first."""
+
+    scene: SceneRecord
+    rows: tuple[Row, ...]
+    figures: tuple[tuple[str, Picture], ...]
+
+
+def write_study_page(study: Study, folder: Path) -> Path:
+    """Write `folder/index.html` and its figures; return the page's path."""
+    run = as_run(study)
+    cases = {case.name: case for case in run.cases}
+    shown = []
+    for scene in study.scenes:
+        figures = tuple(
+            (title, render(drawing, file_stem(scene.name, name), drawing.size))
+            for name, title, drawing in _figures(scene, study.confidence)
+        )
+        for _, picture in figures:
+            picture.save(folder / "figures")
+        rows = [Row(entry, cases[f"{scene.name} / {entry.name}"]) for entry in scene.estimators]
+        shown.append(SceneShown(scene, tuple(sorted(rows, key=_place)), figures))
+    counts = {status: sum(case.status == status for case in run.cases) for status in STATUSES}
+    page = fill(
+        "study.html",
+        kind="study",
+        study=study,
+        run=run,
+        scenes=shown,
+        counts=counts,
+        heavy=[row for one in shown for row in one.rows if row.entry.warning],
+        needs=needs(run.cases),
+        has_csv=(folder / "results.csv").exists(),
+        headline=headline(study, counts),
+        tone=_tone(study, counts),
+    )
+    return write_file(folder / "index.html", page)
+
+
+def headline(study: Study, counts: Mapping[Status, int]) -> tuple[str, str]:
+    """Return the outcome of a study in words: a sentence that stands alone, and the counts behind it."""
+    total = sum(counts.values())
+    missing = study.batches.get("planned", 0) - study.batches.get("done", 0)
+    if not total:
+        first = "No estimator was studied"
+    elif counts["rejected"]:
+        first = f"{counts['rejected']} of {total} estimators {'is' if counts['rejected'] == 1 else 'are'} biased"
+    elif study.failures or missing:
+        first = f"The study is incomplete: {missing} of {study.batches.get('planned', 0)} batches are missing"
+    elif study.history and study.history.worse:
+        first = "Something came out worse than before"
+    elif counts["inconclusive"]:
+        n = counts["inconclusive"]
+        first = f"No bias was found, but {n} of {total} estimators {'is' if n == 1 else 'are'} not judged"
+    else:
+        first = "Every estimator came out as expected"
+    words = {"passed": "unbiased as far as seen", "known": "biased as declared", "rejected": "biased"}
+    parts = [f"{counts[status]} {words.get(status, status)}" for status in STATUSES if counts[status]]
+    scenes = f"{len(study.scenes)} scene{'' if len(study.scenes) == 1 else 's'}"
+    return first, ", ".join([f"{study.title}: {scenes}", *parts])
+
+
+def _tone(study: Study, counts: Mapping[Status, int]) -> str:
+    if counts["rejected"] or study.failures or (study.history and study.history.worse):
+        return "bad"
+    return "care" if counts["inconclusive"] or not sum(counts.values()) else "good"
+
+
+def _place(row: Row) -> tuple[float, float]:
+    """Return where an estimator stands: by rank, then by efficiency; what is biased last."""
+    speed = row.entry.speed
+    if speed is None or speed.efficiency is None:
+        return inf, inf
+    return speed.rank or 1e9, -speed.efficiency
+
+
+def _figures(scene: SceneRecord, confidence: float) -> Iterator[tuple[str, str, Convergence]]:
+    """Yield (name, title, drawing): random points, then Sobol points and marching, each over their number and over time.
+
+    Sobol points and marching reach errors far below those of random points, and would flatten their curves. Over time the best
+    estimator with random points stands among them.
+    """
+    unit = "" if scene.unit == "1" else f" [{scene.unit.replace('^2', '²')}]"
+    up, time = f"root mean square error{unit}", "time of one estimate [s]"
+    looks = list(dict.fromkeys((entry.kind, str(entry.options)) for entry in scene.estimators))
+    random: tuple[list[Curve], list[Curve]] = ([], [])
+    others: tuple[list[Curve], list[Curve]] = ([], [])
+    for entry in scene.estimators:
+        if entry.axis == "nothing":  # exact: there is no error to fall
+            continue
+        look = looks.index((entry.kind, str(entry.options)))
+        other = entry.points == "sobol" or entry.axis == "steps"
+        counted, timed = others if other else random
+        counted += _curve(entry, look, [float(c.count) for c in entry.counts], other)
+        if entry.speed:
+            curve = _curve(entry, look, [timing.seconds for timing in entry.speed.counts], other)
+            timed += curve
+            if entry.name == scene.answer.best_random:
+                others[1].extend(curve)
+    for name, across, title, curves, slope in (
+        ("samples", "samples", "Error against samples", random[0], -0.5),
+        ("time", time, "Error against time", random[1], -0.5),
+        ("other", "Sobol points, or steps of a march", "Sobol points and marching", others[0], -1.0),
+        ("other-time", time, "Sobol points and marching against time", others[1] if others[0] else [], -1.0),
+    ):
+        if curves:
+            yield name, title, Convergence(across, up, tuple(curves), confidence, slope)
+
+
+def _curve(entry: Entry, look: int, effort: list[float], dashed: bool) -> list[Curve]:
+    """Return the curve of an estimator over its effort, without what a logarithm cannot show; none of fewer than one point."""
+    kept = [(x, c) for x, c in zip(effort, entry.counts, strict=True) if x > 0 and 0 < c.rmse < inf]
+    if not kept:
+        return []
+    counts = [c for _, c in kept]
+    return [
+        Curve(
+            entry.label,
+            look,
+            tuple(x for x, _ in kept),
+            tuple(c.rmse for c in counts),
+            tuple(c.rmse_low for c in counts),
+            tuple(c.rmse_high for c in counts),
+            tuple(nan if c.predicted is None else c.predicted for c in counts),
+            dashed,
+        )
+    ]

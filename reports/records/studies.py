@@ -1,0 +1,275 @@
+"""The record of a convergence study: scenes, the estimators that were put to them, and how they compare."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal
+
+from fogproof.checks.verdict import Finding, Verdict
+from fogproof.errors import InvalidInputError, shorten
+from fogproof.plan import Plan
+from fogproof.reports.records.runs import Case, Run, validated
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A value and the interval, at the study's confidence, that holds the truth."""
+
+    value: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class Slope(Estimate):
+    """The power of the number of samples with which the error falls; `expected` is -0.5 for random points."""
+
+    expected: float | None = None
+
+
+@dataclass(frozen=True)
+class March:
+    """How a marched estimate nears the reference: |error| ~ steps^-order, down to `floor` at `at` steps."""
+
+    order: Estimate | None
+    floor: float
+    at: int
+    reached: bool
+
+
+@dataclass(frozen=True)
+class Variance:
+    """Variance of a realisation: measured, and `exact` by the oracle where it knows it."""
+
+    measured: float
+    low: float
+    high: float
+    exact: float | None = None
+    exact_error: float | None = None
+    method: str | None = None
+
+
+@dataclass(frozen=True)
+class Count:
+    """The error after so many samples (steps, if marched); `predicted` is the oracle's."""
+
+    count: int
+    replicates: int
+    mean: float
+    rmse: float
+    rmse_low: float
+    rmse_high: float
+    predicted: float | None = None
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Seconds of one realisation at one count, and of the whole estimate."""
+
+    count: int
+    value: float
+    low: float
+    high: float
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Target:
+    """What a relative error takes; None if it is never reached, and `how` says why."""
+
+    error: float
+    samples: float | None
+    seconds: float | None
+    how: str
+
+
+@dataclass(frozen=True)
+class Speed:
+    """Time, and what it buys: efficiency = 1 / (mean squared error x time), relative to the scene's best random estimator."""
+
+    cpu: Estimate
+    wall: float
+    batches: int
+    cpu_total: float
+    counts: tuple[Timing, ...]
+    targets: tuple[Target, ...]
+    efficiency: float | None = None
+    relative: Estimate | None = None
+    rank: int | None = None
+    gain: Estimate | None = None
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One estimator of a scene."""
+
+    name: str
+    kind: str
+    title: str
+    label: str
+    points: Literal["random", "sobol"]
+    axis: Literal["samples", "steps", "nothing"]
+    expected: Literal["not rejected", "rejected"]
+    outcome: str
+    status: Literal["passed", "known", "rejected", "inconclusive"]
+    moments: dict[str, Any]
+    counts: tuple[Count, ...]
+    findings: tuple[Finding, ...] = ()
+    reason: str = ""
+    warning: str = ""
+    options: dict[str, Any] = field(default_factory=dict)
+    bias: Estimate | None = None
+    variance: Variance | None = None
+    slope: Slope | None = None
+    march: March | None = None
+    cost: float | None = None
+    speed: Speed | None = None
+
+
+@dataclass(frozen=True)
+class Answer:
+    """Which estimator to take, in words."""
+
+    best: str | None
+    best_random: str | None
+    text: str
+    ranking: tuple[str, ...] = ()
+    out: tuple[str, ...] = ()
+    question: str = ""
+    scene: str = ""
+
+
+@dataclass(frozen=True)
+class Truth:
+    """The oracle's value: |value - truth| <= error."""
+
+    value: float
+    error: float
+    method: str
+    source: str
+
+
+@dataclass(frozen=True)
+class SceneRecord:
+    """A scene, its reference, and its estimators in the order of the study file."""
+
+    name: str
+    question: str
+    quantity: str
+    unit: str
+    described: dict[str, Any]
+    reference: Truth
+    answer: Answer
+    estimators: tuple[Entry, ...]
+    plan: Plan | None = None
+
+
+@dataclass(frozen=True)
+class Change:
+    """What became of an estimator since an earlier run; time and variance are ratios after / before."""
+
+    scene: str
+    estimator: str
+    became: tuple[str, ...]
+    time: Estimate | None = None
+    variance: Estimate | None = None
+
+
+@dataclass(frozen=True)
+class History:
+    """What changed since an earlier run of the same study."""
+
+    before: dict[str, Any]
+    same_draws: bool
+    mood: float
+    wander: float
+    worse: bool
+    text: str
+    changes: tuple[Change, ...]
+    gone: tuple[str, ...] = ()
+    new: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Study:
+    """A whole study."""
+
+    title: str
+    command: str
+    started: str
+    seconds: float
+    cpu_seconds: float
+    seed: int
+    alpha: float
+    confidence: float
+    fogproof: str
+    environment: dict[str, Any]
+    executor: str
+    workers: int
+    exit_code: int
+    digest: str
+    settings: dict[str, Any]
+    batches: dict[str, int]
+    scenes: tuple[SceneRecord, ...]
+    answers: tuple[Answer, ...] = ()
+    failures: tuple[dict[str, Any], ...] = ()
+    sessions: tuple[dict[str, Any], ...] = ()
+    mixed: bool = False
+    history: History | None = None
+
+
+def parse_study(record: dict[str, Any], origin: str = "record") -> Study:
+    """Return the record of a study as dataclasses; a fault is an `InvalidInputError` that names its place."""
+    study = validated(Study, record, origin)
+    names: set[tuple[str, str]] = set()
+    for scene in study.scenes:
+        for entry in scene.estimators:
+            if (scene.name, entry.name) in names:
+                raise InvalidInputError(
+                    f"{origin}: scene {shorten(scene.name)} has {shorten(entry.name)} twice", "scenes"
+                )
+            names.add((scene.name, entry.name))
+            if entry.speed and len(entry.speed.counts) != len(entry.counts):
+                place = f"scenes.{scene.name}.{entry.name}.speed.counts"
+                raise InvalidInputError(f"{origin}: {place} must be as many as counts", place)
+    return study
+
+
+def as_run(study: Study) -> Run:
+    """Return the bias gate of a study as a run: each estimator in its scene is a case."""
+    cases = [_case(study, scene, entry) for scene in study.scenes for entry in scene.estimators]
+    return Run(
+        schema="fogproof/results/1",
+        kind="study",
+        fogproof=study.fogproof,
+        environment=study.environment,
+        command=study.command,
+        seed=study.seed,
+        alpha=study.alpha,
+        started=study.started,
+        seconds=study.seconds,
+        exit_code=study.exit_code,
+        cases=tuple(cases),
+    )
+
+
+def _case(study: Study, scene: SceneRecord, entry: Entry) -> Case:
+    reference = scene.reference
+    case = Case(
+        name=f"{scene.name} / {entry.name}",
+        title=entry.label,
+        kind="estimator",
+        status=entry.status,
+        expected=entry.expected,
+        reason=entry.reason,
+        source=reference.source,
+        reference=f"{reference.value:.12g} ± {reference.error:.2g}, {reference.method}",
+        twin="",
+        reproduce=study.command,
+        seconds=entry.speed.cpu_total if entry.speed else 0.0,
+        plan=scene.plan,
+    )
+    if not entry.findings:
+        return case
+    drawn = int(entry.moments.get("n") or 0)
+    return replace(case, verdict=Verdict(entry.findings, study.alpha, drawn, study.seed, case.seconds, entry.options))

@@ -1,0 +1,1 @@
+"""Estimators with planted errors, for the broken twins."""

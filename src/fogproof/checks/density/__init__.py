@@ -1,0 +1,1 @@
+"""Integrals of a density over its domain, with error bounds."""

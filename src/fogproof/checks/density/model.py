@@ -1,0 +1,165 @@
+"""What a claimed density says: its integral over every part of the domain, by quadrature that looks for what it may have missed.
+
+Adaptive quadrature trusts its nodes, and a black box may hide a peak or a hole between them. So the polynomials that it leaves
+behind are compared with the density where it was not asked: on a line at 32 probes a panel, at both sides of every panel's end and
+at the points of a pilot sample; on a plane at the points of the pilot. Where they differ, the boxes are cut around the place and
+integrated again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from fogproof.checks.density.charts import Chart
+from fogproof.checks.density.curve import TO_COEFFICIENTS, curve_of_line, legendre
+from fogproof.checks.density.quadrature import NODES, Leaves, integrate, refine, replaced, split
+
+Density = Callable[[np.ndarray], np.ndarray]
+
+_PANELS = 512  # between quantiles of the pilot
+_SPREAD = 32  # more panels, of equal width: they see what the pilot of a wrong sampler never visits
+_PLANE = 8  # boxes along each axis of a plane to begin with
+_PROBES = 32  # points of a panel at which its polynomial is compared with the density
+_POINTS = 4096  # of the pilot that are compared on a plane
+_ROUNDS = 12  # of looking and cutting
+_MOST_CUT = 256  # boxes cut in one round of looking
+_RELATIVE = 1e-3  # a polynomial that is wrong by less misses no feature
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How hard to try: wanted error of the integral, most evaluations, relative rounding noise of the density."""
+
+    tolerance: float
+    budget: int
+    noise: float
+
+
+def integrated(chart: Chart, density: Density, pilot: np.ndarray, effort: Effort) -> Leaves:
+    """Return boxes that fill the chart, with the density (m, k) -> (m,) known on each; `pilot` (n, k) are coordinates."""
+    return _line(chart, density, pilot[:, 0], effort) if len(chart.axes) == 1 else _plane(chart, density, pilot, effort)
+
+
+def _line(chart: Chart, density: Density, pilot: np.ndarray, effort: Effort) -> Leaves:
+    low, high = chart.axes[0].low, chart.axes[0].high
+    inner = np.quantile(pilot, np.arange(_PANELS + 1) / _PANELS) if len(pilot) else np.empty(0)
+    inner = inner[(inner > low) & (inner < high)]
+    breaks = np.unique(np.concatenate([inner, np.linspace(low, high, _SPREAD + 1)]))
+    leaves = integrate(density, breaks[:-1, None], breaks[1:, None], effort.tolerance, effort.budget, effort.noise)
+    leaves = looked_at(density, leaves, np.sort(pilot), effort)
+    probes = np.concatenate([[1e-9], (np.arange(_PROBES) + 0.5) / _PROBES, [1 - 1e-9]])
+    checked = np.empty(0)
+    for _ in range(_ROUNDS):
+        fresh = ~np.isin(leaves.low[:, 0], checked)
+        left, right = leaves.low[fresh, 0], leaves.high[fresh, 0]
+        points = left[:, None] + (right - left)[:, None] * probes
+        checked = leaves.low[:, 0]
+        finer = looked_at(density, leaves, np.sort(points.ravel()), effort, rounds=1)
+        if finer is leaves:
+            break
+        leaves = finer
+    return leaves
+
+
+def looked_at(density: Density, leaves: Leaves, points: np.ndarray, effort: Effort, rounds: int = _ROUNDS) -> Leaves:
+    """Compare one-dimensional leaves with the density at sorted points (n,); return them cut finer where they differ."""
+    if len(points) == 0:
+        return leaves
+    value = density(points[:, None])
+    for _ in range(rounds):
+        curve = curve_of_line(leaves)
+        owner = np.clip(np.searchsorted(curve.breaks, points, side="right") - 1, 0, len(curve.breaks) - 2)
+        width = curve.breaks[owner + 1] - curve.breaks[owner]
+        missed = _missed(value, curve.density(points), width, effort)
+        if not missed.any():
+            break
+        miss = np.abs(value - curve.density(points))[missed] * width[missed]
+        order = np.lexsort((-miss, owner[missed]))
+        boxes, first = np.unique(owner[missed][order], return_index=True)
+        worst = np.argsort(miss[order][first])[::-1][:_MOST_CUT]
+        boxes, around = boxes[worst], points[missed][order][first][worst]
+        by_place = np.argsort(leaves.low[:, 0])
+        low, high = _cut_around(curve.breaks[boxes], curve.breaks[boxes + 1], around)
+        finer = replaced(density, leaves, by_place[boxes], low[:, None], high[:, None])
+        finer = refine(density, finer, effort.tolerance, effort.budget, effort.noise)
+        if len(finer.low) == len(leaves.low) or finer.evaluations > effort.budget:
+            return finer
+        leaves = finer
+    return leaves
+
+
+def _missed(value: np.ndarray, polynomial: np.ndarray, volume: np.ndarray, effort: Effort) -> np.ndarray:
+    """Return where a density and its polynomial differ by more than noise, over a volume that could matter."""
+    with np.errstate(invalid="ignore"):
+        gap = np.abs(value - polynomial)
+        larger = np.maximum(np.abs(value), np.abs(polynomial))
+        return (gap > (_RELATIVE + 64 * effort.noise) * larger) & (gap * volume > effort.tolerance)
+
+
+def _cut_around(left: np.ndarray, right: np.ndarray, around: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return ends of panels that shrink geometrically towards a point in each of the given panels."""
+    steps = (right - left)[:, None] * 4.0 ** -np.arange(1, 14)
+    edges = np.concatenate(
+        [left[:, None], around[:, None] - steps, around[:, None], around[:, None] + steps, right[:, None]], axis=1
+    )
+    edges = np.sort(np.clip(edges, left[:, None], right[:, None]), axis=1)
+    low, high = edges[:, :-1].ravel(), edges[:, 1:].ravel()
+    return low[low < high], high[low < high]
+
+
+def _plane(chart: Chart, density: Density, pilot: np.ndarray, effort: Effort) -> Leaves:
+    low, high = corners(tuple(np.linspace(axis.low, axis.high, _PLANE + 1) for axis in chart.axes))
+    leaves = integrate(density, low, high, effort.tolerance, effort.budget, effort.noise)
+    return looked_at_plane(density, leaves, pilot[:_POINTS], effort)
+
+
+def looked_at_plane(density: Density, leaves: Leaves, points: np.ndarray, effort: Effort) -> Leaves:
+    """Compare two-dimensional leaves with the density at points (n, 2); return them cut finer where they differ."""
+    value = density(points) if len(points) else np.empty(0)
+    for _ in range(_ROUNDS):
+        if len(points) == 0 or leaves.evaluations > effort.budget:
+            break
+        owner = _owners(leaves, points)
+        found = owner >= 0
+        volume = np.prod(leaves.high - leaves.low, axis=1)[owner]
+        missed = found & _missed(value, plane_density(leaves, owner, points), volume, effort)
+        points, value = points[missed], value[missed]
+        if len(points) == 0:
+            break
+        cut = np.unique(owner[missed])[:_MOST_CUT]
+        leaves = split(density, leaves, cut)
+        leaves = refine(density, leaves, effort.tolerance, effort.budget, effort.noise)
+    return leaves
+
+
+def _owners(leaves: Leaves, points: np.ndarray) -> np.ndarray:
+    """Return (n,) the index of the box that holds each point (n, 2), -1 where none does."""
+    x, y = points[:, :1], points[:, 1:]
+    inside = (x >= leaves.low[:, 0]) & (x <= leaves.high[:, 0])
+    inside &= y >= leaves.low[:, 1]
+    inside &= y <= leaves.high[:, 1]
+    return np.where(inside.any(axis=1), inside.argmax(axis=1), -1)
+
+
+def plane_density(leaves: Leaves, owner: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """Return (n,) the polynomials of the owning boxes (n,) at points (n, 2)."""
+    if len(points) == 0:
+        return np.empty(0)
+    low, high = leaves.low[owner], leaves.high[owner]
+    s = np.clip((2 * points - low - high) / (high - low), -1, 1)
+    p, q = legendre(s[:, 0], len(NODES) - 1), legendre(s[:, 1], len(NODES) - 1)
+    result = np.zeros(len(points))
+    order = np.argsort(owner, kind="stable")
+    for group in np.split(order, np.flatnonzero(np.diff(owner[order])) + 1):
+        coefficients = TO_COEFFICIENTS.T @ leaves.values[owner[group[0]]] @ TO_COEFFICIENTS
+        result[group] = np.sum((coefficients.T @ p[:, group]) * q[:, group], axis=0)
+    return result
+
+
+def corners(edges: tuple[np.ndarray, ...]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the (m, k) lower and upper corners of all cells of a grid, the last axis running fastest."""
+    low, high = (np.meshgrid(*ends, indexing="ij") for ends in ([e[:-1] for e in edges], [e[1:] for e in edges]))
+    return tuple(np.stack([g.ravel() for g in grid], axis=-1) for grid in (low, high))  # type: ignore[return-value]

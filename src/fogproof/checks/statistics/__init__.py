@@ -1,0 +1,1 @@
+"""The statistical tests, one a file."""

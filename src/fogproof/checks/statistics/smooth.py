@@ -1,0 +1,94 @@
+"""Smooth tests (Neyman 1937): a few orthogonal components, in which errors of parameters and formulas concentrate.
+
+A test on thousands of cells spreads its attention; one on the first Legendre polynomials of the probability-integral transform
+comes close to the best test there is for any smooth error. Products of them for two axes see how the axes depend on each other.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from fogproof.checks.density.curve import legendre
+from fogproof.checks.density.grid import Marginal, Plane
+from fogproof.checks.statistics.goodness import MISS, nothing_counted
+from fogproof.checks.statistics.tails import chi_square_above, chi_square_detected
+from fogproof.checks.verdict import Finding, Resolution
+
+COMPONENTS = 4
+_PRODUCTS = 3  # polynomials of each axis whose products are used
+_NEGLIGIBLE = 0.02  # standard deviations
+_FAR = 1e-4  # p-values below it are corrected for skewness
+
+
+def smooth(name: str, marginal: Marginal, counts: np.ndarray, alpha: float) -> Finding:
+    """Test the first four Legendre components of a marginal's counts (m,): chi-square with four degrees of freedom.
+
+    A component is the sum over samples of the normalised polynomial's mean over the sample's cell: its expectation is exactly 0.
+    """
+    n = int(counts.sum())
+    if n == 0:
+        return nothing_counted(name, alpha)
+    mass = np.maximum(marginal.mass, 1e-300)
+    steps = np.diff(_integrals(marginal.cdf), axis=1) / mass  # (components, m) means over the cells
+    z = np.einsum("km,m->k", steps, counts.astype(float)) / math.sqrt(n)
+    doubt = marginal.error + marginal.blur
+    slack = math.sqrt(n) * np.sum(np.abs(np.diff(steps, axis=1)) * doubt[1:-1], axis=1)
+    finding = _judged(name, z, slack, n, alpha, f"smooth misfit in {marginal.label}")
+    if finding.outcome == "rejected" and np.argmax(np.abs(z)) == 0:
+        up = (z[0] > 0) == (marginal.shown[-1] > marginal.shown[0])
+        return finding.located(f"samples lean towards {'large' if up else 'small'} {marginal.label}")
+    return finding
+
+
+def cross(name: str, labels: tuple[str, str], plane: Plane, counts: np.ndarray, alpha: float) -> Finding:
+    """Test products of the first three Legendre polynomials of two axes on the coarse counts (32, 32): nine components."""
+    n = int(counts.sum())
+    if n == 0:
+        return nothing_counted(name, alpha)
+    bases = []
+    for axis in (0, 1):
+        share = plane.mass.sum(axis=1 - axis)
+        middle = np.cumsum(share) - 0.5 * share
+        bases.append(legendre(2 * middle - 1, _PRODUCTS)[1:])
+    products = np.einsum("ai,bj->abij", *bases).reshape(_PRODUCTS**2, -1)
+    mass = plane.mass.ravel()
+    products = products - (products @ mass)[:, None]
+    values, vectors = np.linalg.eigh((products * mass) @ products.T)
+    white = (vectors / np.sqrt(np.maximum(values, 1e-12))).T @ products
+    z = white @ counts.ravel() / math.sqrt(n)
+    slack = math.sqrt(n) * np.abs(white) @ plane.error.ravel()
+    return _judged(name, z, slack, n, alpha, f"smooth dependence of {labels[0]} and {labels[1]}", "correlation")
+
+
+def _judged(
+    name: str, z: np.ndarray, slack: np.ndarray, n: int, alpha: float, kind: str, cause: str = "shape"
+) -> Finding:
+    statistic = float(np.sum(np.maximum(np.abs(z) - slack, 0) ** 2))
+    p = chi_square_above(len(z), statistic)
+    if p < _FAR:  # the skewness of a component, at most 1, shows far in the tail
+        p = min(_FAR, p * math.exp(min(statistic**1.5 / (6 * math.sqrt(n)), 1.0)))
+    rejected = p <= alpha
+    largest = int(np.argmax(np.abs(z)))
+    message = f"chi-square = {statistic:.4g} on {len(z)} components, the largest is number {largest + 1}"
+    seen = math.sqrt(chi_square_detected(len(z), alpha, MISS) / n)
+    return Finding(
+        name,
+        "rejected" if rejected else "not rejected",
+        message,
+        p,
+        alpha,
+        bool(np.all(slack < _NEGLIGIBLE)) and n >= 1000,
+        statistic,
+        math.sqrt(max(statistic - len(z), 0.0) / n),
+        Resolution(f"{kind} (root mean square of the ratio of densities less 1)", seen, MISS),
+        cause=cause if rejected else "",
+    )
+
+
+def _integrals(u: np.ndarray) -> np.ndarray:
+    """Return (components, len(u)) integrals from 0 to u of the normalised shifted Legendre polynomials."""
+    p = legendre(2 * u - 1, COMPONENTS + 1)
+    k = np.arange(1, COMPONENTS + 1)[:, None]
+    return 0.5 * (p[2:] - p[:-2]) / np.sqrt(2 * k + 1)

@@ -1,0 +1,1 @@
+"""The estimators that a study can name, one family a file."""

@@ -1,0 +1,182 @@
+"""Methods for the transmittance along a ray."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar, Literal
+
+import numpy as np
+
+from fogproof.analytic import transmittance_variance
+from fogproof.contracts import Draws, Estimator, Reference
+from fogproof.errors import UnsupportedError
+from fogproof.estimators import (
+    AnalogTransmittance,
+    DeltaTransmittance,
+    MarchedTransmittance,
+    RatioTransmittance,
+    ResidualRatioTransmittance,
+    along,
+    regular_tracking,
+)
+from fogproof.estimators.tracking.medium_data import extremes
+from fogproof.scene import Ray, VoxelGrid
+
+if TYPE_CHECKING:
+    from fogproof.study.files import StudyScene
+
+
+@dataclass(frozen=True, eq=False)
+class _Walks:
+    """Regular tracking, walked once for each realisation: its time is that of a walk, as a renderer would pay it."""
+
+    grid: VoxelGrid
+    ray: Ray
+
+    def draw(self, rng: np.random.Generator, n: int) -> Draws:
+        walks = regular_tracking(self.grid, self.ray, np.full(n, np.inf))
+        return Draws(np.exp(-walks.tau), walks.cells)
+
+
+@dataclass(frozen=True)
+class Regular:
+    """Every voxel on the way in closed form."""
+
+    quantity: ClassVar[str] = "transmittance"
+    title: ClassVar[str] = "Regular tracking"
+    axis: ClassVar[str] = "nothing"
+    expected: ClassVar[str] = "not rejected"
+    reason: ClassVar[str] = ""
+    dimensions: ClassVar[None] = None
+
+    def make(self, scene: StudyScene, count: int) -> Estimator:
+        """Return the estimator."""
+        if not isinstance(scene.matter, VoxelGrid):
+            raise UnsupportedError(f"regular tracking needs a VoxelGrid, got {type(scene.matter).__name__}", "medium")
+        return _Walks(scene.matter, scene.ray)
+
+    def variance(self, scene: StudyScene) -> Reference | None:
+        """Return 0."""
+        return Reference(np.asarray(0.0), np.asarray(0.0), "nothing is random", "")
+
+
+@dataclass(frozen=True)
+class Analog:
+    """A free path by the closed inverse: 1 if it reaches the end of the ray."""
+
+    quantity: ClassVar[str] = "transmittance"
+    title: ClassVar[str] = "Free path"
+    axis: ClassVar[str] = "samples"
+    expected: ClassVar[str] = "not rejected"
+    reason: ClassVar[str] = ""
+    dimensions: ClassVar[int] = 1
+
+    def make(self, scene: StudyScene, count: int) -> Estimator:
+        """Return the estimator."""
+        return AnalogTransmittance(along(scene.matter, scene.ray), float(scene.ray.length))
+
+    def variance(self, scene: StudyScene) -> Reference | None:
+        """Return T (1 - T)."""
+        return transmittance_variance(scene.matter, scene.ray, "delta")
+
+
+@dataclass(frozen=True)
+class Delta:
+    """Delta tracking; majorant [1/m], None for the tightest known without a search."""
+
+    majorant: float | None = None
+    quantity: ClassVar[str] = "transmittance"
+    title: ClassVar[str] = "Delta tracking"
+    axis: ClassVar[str] = "samples"
+    expected: ClassVar[str] = "not rejected"
+    reason: ClassVar[str] = ""
+    dimensions: ClassVar[None] = None
+
+    def make(self, scene: StudyScene, count: int) -> Estimator:
+        """Return the estimator."""
+        return DeltaTransmittance(scene.matter, scene.ray, self.majorant)
+
+    def variance(self, scene: StudyScene) -> Reference | None:
+        """Return T (1 - T), whatever the majorant."""
+        return transmittance_variance(scene.matter, scene.ray, "delta")
+
+
+@dataclass(frozen=True)
+class Ratio:
+    """Ratio tracking; majorant [1/m], None for the tightest known without a search."""
+
+    majorant: float | None = None
+    quantity: ClassVar[str] = "transmittance"
+    title: ClassVar[str] = "Ratio tracking"
+    axis: ClassVar[str] = "samples"
+    expected: ClassVar[str] = "not rejected"
+    reason: ClassVar[str] = ""
+    dimensions: ClassVar[None] = None
+
+    def make(self, scene: StudyScene, count: int) -> Estimator:
+        """Return the estimator."""
+        return RatioTransmittance(scene.matter, scene.ray, self.majorant)
+
+    def variance(self, scene: StudyScene) -> Reference | None:
+        """Return T^2 (exp(integral of sigma_t^2 / majorant) - 1)."""
+        majorant = self.majorant or _bounds(scene)[1]
+        return transmittance_variance(scene.matter, scene.ray, "ratio", majorant)
+
+
+@dataclass(frozen=True)
+class ResidualRatio:
+    """Residual ratio tracking; majorant and control [1/m]."""
+
+    majorant: float | None = None
+    control: float | Literal["low", "middle"] = "low"
+    quantity: ClassVar[str] = "transmittance"
+    title: ClassVar[str] = "Residual ratio tracking"
+    axis: ClassVar[str] = "samples"
+    expected: ClassVar[str] = "not rejected"
+    reason: ClassVar[str] = ""
+    dimensions: ClassVar[None] = None
+
+    def make(self, scene: StudyScene, count: int) -> Estimator:
+        """Return the estimator."""
+        return ResidualRatioTransmittance(scene.matter, scene.ray, self.majorant, self.control)
+
+    def variance(self, scene: StudyScene) -> Reference | None:
+        """Return T^2 (exp(integral of (sigma_t - control)^2 / residual majorant) - 1); a grid's control ends with the grid."""
+        if isinstance(scene.matter, VoxelGrid):
+            return None
+        low, high = _bounds(scene)
+        high = self.majorant or high
+        low = min(low, high)
+        named = {"low": low, "middle": 0.5 * (low + high)}
+        control = named[self.control] if isinstance(self.control, str) else self.control
+        residual = max(high - control, control - low if control > 0 else 0.0)
+        return transmittance_variance(scene.matter, scene.ray, "residual-ratio", residual, control)
+
+
+@dataclass(frozen=True)
+class March:
+    """Ray marching, the study's counts being its steps."""
+
+    rule: Literal["midpoint", "right"] = "midpoint"
+    quantity: ClassVar[str] = "transmittance"
+    title: ClassVar[str] = "Ray marching"
+    axis: ClassVar[str] = "steps"
+    expected: ClassVar[str] = "rejected"
+    reason: ClassVar[str] = "a Riemann sum is biased; the bias falls with the step"
+    dimensions: ClassVar[None] = None
+
+    def make(self, scene: StudyScene, count: int) -> Estimator:
+        """Return the estimator with so many steps."""
+        step = float(scene.ray.length) / count * (1 + 1e-12)  # rounding must not make it one more
+        return MarchedTransmittance(scene.matter, scene.ray, step, self.rule)
+
+    def variance(self, scene: StudyScene) -> Reference | None:
+        """Return 0."""
+        return Reference(np.asarray(0.0), np.asarray(0.0), "nothing is random", "")
+
+
+def _bounds(scene: StudyScene) -> tuple[float, float]:
+    """Return what a tracker takes for the least and the greatest extinction on the way [1/m]."""
+    ray = scene.ray
+    low, high = extremes(scene.matter, ray.origin[None], ray.direction[None], ray.length[None])
+    return float(low[0]), float(high[0])

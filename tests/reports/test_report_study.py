@@ -1,0 +1,182 @@
+"""The page of a study says which estimator to take, lets no biased one win, and shows every number of its record."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from urllib.parse import unquote
+from xml.etree import ElementTree
+
+import pytest
+from report_records import HOSTILE, Page, case, entry, record, study
+
+from fogproof.errors import InvalidInputError
+from fogproof.reports import came_out_worse, write_comparison, write_report
+from fogproof.reports.charts.convergence import Convergence, Curve
+from fogproof.reports.charts.pictures import render
+from fogproof.reports.pages.study import headline
+from fogproof.reports.records.studies import as_run, parse_study
+
+
+def with_entries(*entries, **changes):
+    wanted = study(**changes)
+    wanted["scenes"][0]["estimators"] = list(entries)
+    return wanted
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    return write_report(study(), tmp_path_factory.mktemp("study"))
+
+
+def test_answers_come_first_and_everything_is_told(page):
+    words = " ".join(Page(page).words.split())
+    order = [
+        "1 of 6 estimators is biased",
+        "Which is best in haze?",
+        "What to do",
+        "Since the earlier run",
+        "Error against samples",
+    ]
+    assert [words.index(text) for text in order] == sorted(words.index(text) for text in order)
+    for text in (
+        "Exact is best.",
+        "heavy tail: one realisation",
+        "ZeroDivisionError",
+        "19 of 20 batches",
+        "mixed",
+        "slower",
+        "Gone: haze / old",
+        "0.135335283237 ± 1e-17 W/(m^2 sr)",
+        "40 times its random twin",
+        "never",
+        "order of the march",
+        "exactly 0.09",
+        "What each scene needs",
+        "d" * 64,
+        "fogproof study lecture.toml",
+    ):  # fmt: skip
+        assert text in words or text.capitalize() in words, text
+
+
+def test_figures_are_four_and_the_exact_estimator_is_in_none(page):
+    read = Page(page)
+    figures = sorted(path.name for path in (page.parent / "figures").iterdir())
+    assert len(figures) == 8
+    assert {Path(name).suffix for name in figures} == {".png", ".svg"}
+    for name in figures:
+        if name.endswith(".svg"):
+            svg = (page.parent / "figures" / name).read_text()
+            assert ">exact<" not in svg
+            assert ("predicted by the oracle" in svg) == (".other-" not in name or ".other-time" in name)
+            assert ("march" in svg) == (".other" in name)
+            ElementTree.fromstring(svg)
+    assert read.html.count("Again: <code>fogproof study lecture.toml") == 4
+
+
+def test_every_link_leads_somewhere(page):
+    read = Page(page)
+    ids = [attributes["id"] for _, attributes in read.elements if "id" in attributes]
+    assert len(set(ids)) == len(ids)
+    for link in read.all("a"):
+        target = unquote(link["href"])
+        assert target[1:] in ids if target.startswith("#") else (page.parent / target).is_file(), target
+
+
+def test_biased_estimators_have_no_rank_and_come_last(page):
+    html = Page(page).html
+    table = html[html.index("Efficiency is 1") :]
+    rows = re.findall(r'<td class="num" data-label="rank">(.*?)</td>\n<th scope="row"><a[^>]*><bdi>(.*?)</bdi>', table)
+    assert rows[:3] == [("1", "exact"), ("1", "delta"), ("1", "ratio")]
+    assert set(rows[-2:]) == {("–", "march"), ("–", "broken")}
+
+
+@pytest.mark.parametrize(
+    ("wanted", "words"),
+    [
+        (with_entries(entry("a", status="rejected")), "1 of 1 estimators is biased"),
+        (with_entries(entry("a")), "The study is incomplete: 1 of 20 batches are missing"),
+        (
+            with_entries(entry("a"), batches={"planned": 3, "done": 3}, failures=[]),
+            "Something came out worse than before",
+        ),
+        (
+            with_entries(entry("a", status="inconclusive"), batches={}, failures=[], history=None),
+            "No bias was found, but 1 of 1 estimators is not judged",
+        ),
+        (with_entries(entry("a"), batches={}, failures=[], history=None), "Every estimator came out as expected"),
+        (with_entries(batches={}, failures=[], history=None), "No estimator was studied"),
+    ],
+)
+def test_headline(wanted, words):
+    parsed = parse_study(wanted)
+    counts = dict.fromkeys(("surprise", "rejected", "error", "inconclusive", "known", "skipped", "passed"), 0)
+    for one in as_run(parsed).cases:
+        counts[one.status] += 1
+    assert headline(parsed, counts)[0] == words
+
+
+def test_hostile_names_are_shown_and_never_obeyed(tmp_path):
+    entries = [entry(text) | {"warning": text, "reason": text} for text in HOSTILE.values()]
+    read = Page(
+        write_report(with_entries(*entries, name=HOSTILE["script"], question=HOSTILE["path"]), tmp_path / "study")
+    )
+    assert len(read.all("script")) == 1
+    assert not read.all("img")
+    assert "{{ 7 * 7 }}" in read.words
+    assert {path.name for path in tmp_path.iterdir()} == {"study"}
+
+
+def plant(*path, value):
+    def change(target):
+        for step in path[:-1]:
+            target = target[step]
+        target[path[-1]] = value
+
+    return change
+
+
+FAULTS = [
+    (plant("scenes", 0, "estimators", 0, "status", value="best"), "scenes.0.estimators.0.status"),
+    (plant("scenes", 0, "estimators", 1, "counts", 0, "rmse", value="small"), "scenes.0.estimators.1.counts.0.rmse"),
+    (plant("scenes", 0, "estimators", 1, "speed", "counts", value=[]), "must be as many as counts"),
+    (plant("scenes", 0, "estimators", 1, "name", value="exact"), "twice"),
+    (plant("history", value=[]), "history"),
+    (plant("schema", value="fogproof/results/9"), "read it with the fogproof that wrote it"),
+]
+
+
+@pytest.mark.parametrize(("change", "words"), FAULTS)
+def test_a_faulty_record_names_the_place_and_is_kept(change, words, tmp_path):
+    wanted = study()
+    change(wanted)
+    with pytest.raises(InvalidInputError, match=re.escape(words)):
+        write_report(wanted, tmp_path)
+    assert (tmp_path / "results.json").exists()
+    assert not (tmp_path / "index.html").exists()
+
+
+def test_two_studies_are_compared(tmp_path):
+    before = with_entries(entry("delta"), entry("ratio", status="rejected"))
+    after = with_entries(entry("delta", status="rejected"), entry("ratio"))
+    words = Page(write_comparison(before, after, tmp_path)).words
+    assert "1 case came out worse" in words
+    assert "1 mended" in words
+    assert came_out_worse(before, after)
+    assert not came_out_worse(after, after)
+
+
+def test_a_study_and_a_verification_can_be_told_apart(tmp_path):
+    words = Page(write_comparison(record([case("a", figures=False)]), study(), tmp_path)).words
+    assert "1 gone" in words
+
+
+def test_errors_of_many_magnitudes_stay_inside_the_figure():
+    curve = Curve(
+        "a", 0, (1.0, 10.0, 100.0), (1.0, 1e-9, 1e-18), (0.5, 0.0, 0.0), (2.0, float("inf"), 1e-17), (float("nan"),) * 3
+    )
+    picture = render(Convergence("samples", "error", (curve,), 0.99), "c", (560, 400))
+    assert "predicted" not in picture.svg
+    assert "nan" not in picture.svg
+    assert "inf" not in picture.svg
+    assert "1e-18" in picture.words
