@@ -14,10 +14,11 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import pairwise
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 
+from fogproof.checks.declared import declared, unchecked
 from fogproof.checks.diagnosis import likely_cause, mirrored
 from fogproof.checks.escalation import EARLY, Stage, Test, doubtful, judged, stages, total_weight
 from fogproof.checks.figures import bins_figure, z_map_figure
@@ -29,14 +30,12 @@ from fogproof.checks.statistics.repeats import repeats_test
 from fogproof.checks.statistics.scan import blocks, scan, scan_ends, scan_plane
 from fogproof.checks.statistics.serial import serial_test
 from fogproof.checks.statistics.smooth import cross, smooth
-from fogproof.checks.streams import batch_generator, batch_sizes, fresh_seed
+from fogproof.checks.streams import batch_generator, batch_sizes
 from fogproof.checks.subject import Precision, Subject
 from fogproof.checks.tally import Tally
 from fogproof.checks.verdict import Finding, Verdict
 from fogproof.contracts import Reference
-from fogproof.domains import Domain, HalfLine, Interval, RealLine, UnitSphere
-from fogproof.errors import InvalidValueError
-from fogproof.validate import number
+from fogproof.domains import Domain, UnitSphere
 
 _CELLS = 512  # of the chi-square test along an axis
 
@@ -55,6 +54,9 @@ def check_sampler(
     albedo: float | tuple[float, ...] | None = None,
     reference: Callable[[np.ndarray], Reference] | None = None,
     precision: Precision = "float64",
+    events: Mapping[int, float] | None = None,
+    uniform_bits: int | None = None,
+    quasi_random: bool = False,
     resolution: float | None = None,
     samples: int = 1_000_000,
     alpha: float = 1e-6,
@@ -72,6 +74,9 @@ def check_sampler(
     albedo       the integral of `eval` over the domain, one number or one a channel; without `eval`, the mean weight
     reference    x -> `Reference`: what pdf(x) should be, from an independent source
     precision    "float32" if the sampler computes in single precision: uniforms and tolerances follow
+    events       {label: probability} of every event label that `Draw.event` may have
+    uniform_bits how many bits the uniforms inside the sampler have, if fewer than the precision's own: repeated values follow
+    quasi_random True if the points of one call are stratified or a low-discrepancy sequence: only their distribution is tested
     resolution   Kolmogorov distance to detect: the first look is sized for it, and a sampler that is clearly right stops there
     samples      most samples to draw
     alpha        false-alarm probability of this call with everything in it
@@ -91,6 +96,9 @@ def check_sampler(
             albedo,
             reference,
             precision,
+            dict(events or {}),
+            uniform_bits,
+            quasi_random,
         ),
         resolution,
         samples,
@@ -118,8 +126,7 @@ class SamplerCheck:
     def of(subject: Subject, resolution: float | None, samples: int, alpha: float, seed: int | None) -> SamplerCheck:
         """Validate the arguments, those of `check_sampler`, and ask all questions that need no samples."""
         started = time.perf_counter()
-        _validate(subject, samples, alpha, resolution)
-        seed = fresh_seed() if seed is None else seed
+        subject, samples, seed = declared(subject, resolution, samples, alpha, seed)
         with np.errstate(all="ignore"):  # what is infinite or undefined is found, not warned of
             prepared = prepare(subject, samples, seed)
         weight = total_weight(tests_of(prepared, prepared.counter.empty()))
@@ -190,8 +197,18 @@ class SamplerCheck:
             f" seed={self.seed})"
         )
         seconds = time.perf_counter() - self.started
-        cause = likely_cause(findings)
-        return Verdict(tuple(findings), self.alpha, tally.drawn, self.seed, seconds, settings, cause, reproduce)
+        pilot = self.prepared.pilot
+        return Verdict(
+            tuple(findings),
+            self.alpha,
+            tally.drawn,
+            self.seed,
+            seconds,
+            settings,
+            likely_cause(findings),
+            reproduce,
+            unchecked=unchecked(subject, pilot.channels, bool(pilot.labels)),
+        )
 
 
 def judge(prepared: Prepared, tally: Tally, alpha: float, final: bool = True) -> list[Finding]:
@@ -241,6 +258,9 @@ def tests_of(prepared: Prepared, tally: Tally) -> list[Test]:
     rest, slack = 1 - sum(subject.atoms.values()), FLOOR[subject.precision]
     what, cause = "probability of the continuous part", wrong_atom if subject.atoms else "lost samples"
     add("lost samples", binomial, "continuous part", what, tally.continuous, n, rest - slack, rest + slack, cause)
+    for label, q in subject.events.items():
+        what, hits = f"probability of the event {label:g}", tally.events.get(float(label), 0)
+        add("event", binomial, "declared event", what, hits, n, q * (1 - 1e-15), q * (1 + 1e-15), "wrong event label")
     for point, q in subject.atoms.items():
         what = f"probability of the atom at {point:g}"
         add("atom", binomial, "atom", what, tally.atoms[point], n, q * (1 - 1e-15), q * (1 + 1e-15), wrong_atom)
@@ -273,23 +293,3 @@ def _illustrated(prepared: Prepared, tally: Tally, findings: list[Finding]) -> l
 
 def _name(function: Any) -> str:
     return getattr(function, "__qualname__", type(function).__name__)
-
-
-def _validate(subject: Subject, samples: int, alpha: float, resolution: float | None) -> None:
-    if not isinstance(subject.domain, get_args(Domain)):
-        known = ", ".join(kind.__name__ for kind in get_args(Domain))
-        raise InvalidValueError("domain", f"must be one of {known}", subject.domain)
-    if subject.dimensions is not None and not (isinstance(subject.dimensions, int) and subject.dimensions >= 1):
-        raise InvalidValueError("dimensions", "must be a whole number >= 1, or None", subject.dimensions)
-    if subject.precision not in get_args(Precision):
-        raise InvalidValueError("precision", "must be 'float64' or 'float32'", subject.precision)
-    number("alpha", alpha, "must lie in (0, 1)", 0, 1, open_ends=True)
-    number("samples", samples, "must be at least 100", 100)
-    if resolution is not None:
-        number("resolution", resolution, "must lie in (0, 1)", 0, 1, open_ends=True)
-    if subject.atoms and not isinstance(subject.domain, (Interval, HalfLine, RealLine)):
-        raise InvalidValueError("atoms", "need a domain of one dimension", subject.domain)
-    for point, probability in subject.atoms.items():
-        number(f"atoms[{point!r}]", probability, "must be a probability in [0, 1]", 0, 1)
-    if subject.mean_cosine is not None and subject.axis is None:
-        raise InvalidValueError("axis", "must be given with mean_cosine", subject.axis)
