@@ -32,7 +32,7 @@ from fogproof.errors import FogproofError, InvalidValueError
 from fogproof.scene import HenyeyGreenstein, Isotropic, Medium, PointLight, Ray, Rayleigh, Scene
 
 if TYPE_CHECKING:
-    from fogproof.checks import Finding, Verdict, check_estimator, check_sampler
+    from fogproof.checks import Finding, Verdict, check_estimator, check_sampler, compare_estimators
     from fogproof.scene.files import read_scene
     from fogproof.scene.volume_files import read_voxel_grid
     from fogproof.scene_estimator import estimator_for
@@ -74,6 +74,7 @@ __all__ = [
     "Verdict",
     "check_estimator",
     "check_sampler",
+    "compare_estimators",
     "estimator_for",
     "read_scene",
     "read_voxel_grid",
@@ -82,6 +83,7 @@ __all__ = [
 _LAZY = {
     "check_sampler": "fogproof.checks",
     "check_estimator": "fogproof.checks",
+    "compare_estimators": "fogproof.checks",
     "Verdict": "fogproof.checks",
     "Finding": "fogproof.checks",
     "estimator_for": "fogproof.scene_estimator",
