@@ -10,7 +10,7 @@ import numpy as np
 
 from fogproof.checks.streams import fresh_seed
 from fogproof.checks.subject import Precision, Subject
-from fogproof.domains import Domain, HalfLine, Interval, RealLine
+from fogproof.domains import Discrete, Domain
 from fogproof.errors import InvalidValueError
 from fogproof.validate import number, unit_vectors
 
@@ -29,10 +29,10 @@ def declared(
     ):
         if function is not None and not callable(function):
             raise InvalidValueError(name, "must be a function", function)
-    if isinstance(subject.domain, type) or not isinstance(subject.domain, get_args(Domain)):
-        known = ", ".join(kind.__name__ for kind in get_args(Domain))
-        fix = f"write {subject.domain.__name__}(...)" if isinstance(subject.domain, type) else ""
-        raise InvalidValueError("domain", f"must be one of {known}", subject.domain, fix)
+    if isinstance(subject.domain, type):
+        raise InvalidValueError("domain", "must be a domain", subject.domain, f"write {subject.domain.__name__}(...)")
+    if not isinstance(subject.domain, Domain):
+        raise InvalidValueError("domain", "must be one of fogproof.domains, or have its parts", subject.domain)
     dimensions = subject.dimensions
     if dimensions is not None:
         dimensions = whole("dimensions", dimensions, 1, "or None for sample(rng, n)")
@@ -43,8 +43,11 @@ def declared(
     number("alpha", alpha, f"must lie in [{_LEAST_ALPHA:g}, 1)", _LEAST_ALPHA, np.nextafter(1, 0))
     if resolution is not None:
         number("resolution", resolution, "must lie in (0, 1)", 0, 1, open_ends=True)
-    if subject.atoms and not isinstance(subject.domain, (Interval, HalfLine, RealLine)):
-        raise InvalidValueError("atoms", "need a domain of one dimension", subject.domain)
+    if subject.atoms and isinstance(subject.domain, Discrete):
+        raise InvalidValueError("atoms", "need a density: on Discrete the pdf is a probability", subject.domain)
+    for point in subject.atoms:
+        if np.shape(point) != subject.domain.shape:
+            raise InvalidValueError("atoms", f"must be points of {subject.domain}", point)
     _probabilities("atoms", subject.atoms)
     _probabilities("events", subject.events)
     events = sum(subject.events.values())

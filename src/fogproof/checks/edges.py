@@ -14,7 +14,7 @@ from fogproof.checks.promises import Watch, at_any_atom, inside
 from fogproof.checks.subject import Subject
 from fogproof.checks.verdict import Finding
 from fogproof.contracts import Draw
-from fogproof.domains import Discrete, UnitHemisphere, UnitSphere
+from fogproof.domains import Discrete
 from fogproof.errors import SubjectError, shorten
 
 _NAME, _CAUSE = "edge uniforms", "edge of the uniforms"
@@ -94,11 +94,10 @@ def _holes(subject: Subject, u: np.ndarray, draw: Draw) -> np.ndarray:
     if isinstance(subject.domain, Discrete) or not len(bad):
         return bad
     inwards = np.clip(u[bad], _INWARDS, 1 - _INWARDS).astype(u.dtype)
-    x, near = draw.x[bad], subject.draw_at(inwards).x
+    near = subject.draw_at(inwards).x
+    law, half = subject.domain.law(near), np.full((len(bad), 1), 0.5)
+    begin, end = law.coordinates(draw.x[bad], half), law.coordinates(near, half)
     begun = np.zeros(len(bad), dtype=bool)
     for share in _TOWARDS:
-        between = x + share * (near - x)
-        if isinstance(subject.domain, (UnitSphere, UnitHemisphere)):
-            between = between / np.linalg.norm(between, axis=1, keepdims=True)
-        begun |= subject.density(between) > 0
+        begun |= subject.density(law.place(np.minimum(begin + share * (end - begin), 1 - 2.0**-53))) > 0
     return bad[~begun]

@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from fogproof.contracts import Draw, Reference
-from fogproof.domains import Discrete, Domain, UnitDisk, UnitHemisphere, UnitSphere, UnitSquare, support
+from fogproof.domains import Domain
 from fogproof.errors import FogproofError, SubjectError, shorten
 
 Precision = Literal["float64", "float32"]
@@ -24,7 +24,7 @@ class Subject:
     pdf: Callable[[np.ndarray], Any]
     domain: Domain
     dimensions: int | None
-    atoms: Mapping[float, float] = field(default_factory=dict)
+    atoms: Mapping[Any, float] = field(default_factory=dict)
     cdf: Callable[[np.ndarray], Any] | None = None
     eval: Callable[[np.ndarray], Any] | None = None
     axis: tuple[float, float, float] | None = None
@@ -65,21 +65,18 @@ class Subject:
         """Return pdf(x), (m,) float64."""
         return numbers("pdf(x)", call("pdf(x)", self.pdf, x), (len(x),))
 
-    def at_atom(self, x: np.ndarray) -> dict[float, np.ndarray]:
-        """Return for each declared atom which of the points are at it, in the sampler's precision."""
+    def at_atom(self, x: np.ndarray) -> dict[Any, np.ndarray]:
+        """Return for each declared atom which of the points are at it, in the sampler's precision.
+
+        A number must be the atom's; a point of several numbers, such as a mirrored direction, may differ from it by rounding.
+        """
+        if x.ndim > 1:
+            slack = 16 * self.roundoff
+            near = {point: np.abs(x - point) <= slack * (1 + np.abs(point)) for point in self.atoms}
+            return {point: each.all(axis=1) for point, each in near.items()}
         if self.precision == "float32":
             return {point: x.astype(np.float32) == np.float32(point) for point in self.atoms}
         return {point: x == point for point in self.atoms}
-
-
-def point_shape(domain: Domain) -> tuple[int, ...]:
-    """Return the shape of one point of the domain."""
-    match domain:
-        case UnitSphere() | UnitHemisphere():
-            return (3,)
-        case UnitDisk() | UnitSquare():
-            return (2,)
-    return ()
 
 
 def call(what: str, function: Callable[..., Any], *arguments: Any) -> Any:
@@ -133,13 +130,13 @@ def _reshaping(got: tuple[int, ...], wanted: tuple[int, ...]) -> str:
 def as_draw(result: Any, n: int, domain: Domain, precision: Precision = "float64") -> Draw:
     """Return what a sampler returned as a `Draw` of n points; every array has the shape its contract promises."""
     if isinstance(result, (tuple, list)) and not isinstance(result, Draw) and len(result) and len(result) != n:
-        if all(getattr(part, "shape", None) == (n,) for part in result) and point_shape(domain) == (len(result),):
+        if all(getattr(part, "shape", None) == (n,) for part in result) and domain.shape == (len(result),):
             raise SubjectError("sample returned one array a coordinate; join them: np.stack(parts, axis=-1)", "sample")
         if all(hasattr(part, "shape") or hasattr(part, "__dlpack__") for part in result):
             given = f"sample returned a {type(result).__name__} of {len(result)}"
             raise SubjectError(f"{given}; name its parts: fogproof.Draw(x, pdf=..., weight=...)", "sample")
     draw = result if isinstance(result, Draw) else Draw(result)
-    x = numbers("sample: x", draw.x, (n, *point_shape(domain)))
+    x = numbers("sample: x", draw.x, (n, *domain.shape))
     kind = getattr(draw.x, "dtype", None)
     if precision == "float64" and str(kind).rpartition(".")[2] in ("float32", "float16", "bfloat16"):
         fix = 'say precision="float32", or compute in double precision'
@@ -155,25 +152,7 @@ def as_draw(result: Any, n: int, domain: Domain, precision: Precision = "float64
 
 def in_domain(domain: Domain, x: np.ndarray, roundoff: float) -> np.ndarray:
     """Return which points lie in the domain, up to a few roundings; NaN and infinity do not."""
-    slack = 16 * roundoff
-    match domain:
-        case UnitSphere():
-            return np.abs(_squared(x) - 1) <= 2 * slack
-        case UnitHemisphere():
-            return (np.abs(_squared(x) - 1) <= 2 * slack) & (x[..., 2] >= -slack)
-        case UnitDisk():
-            return _squared(x) <= 1 + 2 * slack
-        case UnitSquare():
-            return np.all((x >= -slack) & (x <= 1 + slack), axis=-1)
-        case Discrete(n):
-            return (x == np.floor(x)) & (x >= 0) & (x < n)
-    low, high = support(domain)
-    scale = slack * max((abs(end) for end in (low, high) if np.isfinite(end)), default=0.0)
-    return np.isfinite(x) & (x >= low - scale) & (x <= high + scale)
-
-
-def _squared(x: np.ndarray) -> np.ndarray:
-    return np.einsum("...i,...i->...", x, x)
+    return domain.contains(x, 16 * roundoff)
 
 
 def nudged(x: np.ndarray, roundoff: float) -> list[np.ndarray]:
@@ -198,3 +177,8 @@ def rounding_spread(f: Callable[[np.ndarray], np.ndarray], x: np.ndarray, roundo
     y = f(x)
     moves = np.sum([np.abs(f(z) - y) for z in nudged(x, roundoff)], axis=0)
     return 64 * roundoff * np.abs(y) + 2 * np.nan_to_num(moves, nan=np.inf)
+
+
+def named(point: Any) -> str:
+    """Return an atom's point in words."""
+    return f"({', '.join(f'{number:g}' for number in point)})" if isinstance(point, tuple) else f"{point:g}"

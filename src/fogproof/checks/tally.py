@@ -48,7 +48,7 @@ class Tally:
     fine: tuple[np.ndarray, ...]
     plane: np.ndarray | None
     extremes: np.ndarray
-    atoms: dict[float, int]
+    atoms: dict[Any, int]
     events: dict[float, int]
     serial: Successions | None
     prints: np.ndarray
@@ -100,7 +100,7 @@ class Tally:
             "fine": [_packed(counts) for counts in self.fine],
             "plane": None if self.plane is None else _packed(self.plane),
             "extremes": _packed(self.extremes),
-            "atoms": [[float.hex(point), hits] for point, hits in self.atoms.items()],
+            "atoms": [[_written(point), hits] for point, hits in self.atoms.items()],
             "events": [[label, hits] for label, hits in self.events.items()],
             "serial": None
             if serial is None
@@ -123,7 +123,7 @@ class Tally:
             tuple(_unpacked(text) for text in state["fine"]),
             None if state["plane"] is None else _unpacked(state["plane"]),
             _unpacked(state["extremes"]),
-            {float.fromhex(point): hits for point, hits in state["atoms"]},
+            {_read(point): hits for point, hits in state["atoms"]},
             dict(state["events"]),
             None if serial is None else _successions(serial),
             _unpacked(state["prints"]),
@@ -148,7 +148,7 @@ class Counter:
     grid: Grid
     count: Any
     ranges: Ranges | None
-    labels: dict[float | None, int]
+    labels: dict[Any, int]
     scores: tuple[np.ndarray, ...]
     fingerprinted: bool
 
@@ -209,6 +209,14 @@ class Counter:
 def _successions(state: list[Any]) -> Successions:
     sums, products, squares = (_unpacked(part) for part in state[0])
     return Successions(sums, products, squares, state[1], state[2])
+
+
+def _written(point: Any) -> Any:
+    return [float(number).hex() for number in point] if isinstance(point, tuple) else float(point).hex()
+
+
+def _read(point: Any) -> Any:
+    return tuple(map(float.fromhex, point)) if isinstance(point, list) else float.fromhex(point)
 
 
 def _packed(array: np.ndarray) -> dict[str, Any]:
