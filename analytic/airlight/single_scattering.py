@@ -72,6 +72,9 @@ def _along(
     medium: AnyMedium, ray: FlatRays, light: Light, shape: Shape, occluders: Sequence[Occluder], method: Method
 ) -> Result:
     """Return radiance and error (n, channels) of rays of shape (n,), method and source: in closed form, or by quadrature."""
+    if light.distant and shape == EVERYWHERE and isinstance(medium, Medium):
+        zero = np.zeros((len(ray.length), medium.channels or 1))
+        return zero, zero, "no light arrives from infinitely far", "Beer's law"
     known = given(light, "fogproof.analytic.lights", "single_scattering")
     found: Result | None = known and known(medium, ray, light, shape=shape, occluders=occluders, method=method)
     return found or single_scattering_by_quadrature(medium, ray, light, shape, occluders)
