@@ -30,7 +30,7 @@ from fogproof.scene import AnyMedium, Medium
 from fogproof.scene.kinds import given
 from fogproof.scene.lights import Environment
 from fogproof.scene.occluders import Occluder
-from fogproof.scene.phase_functions import Isotropic, PhaseFunction
+from fogproof.scene.phase import Isotropic, PhaseFunction
 from fogproof.scene.shapes import Shape
 
 METHOD = "double exponential rules over directions and along the ray"

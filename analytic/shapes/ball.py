@@ -9,7 +9,7 @@ from fogproof.analytic.arithmetic.gauss_legendre import NODES, WEIGHTS
 from fogproof.analytic.geometry.flat_rays import FlatRays
 from fogproof.analytic.lights.environment import Answer, on_interval, over_directions
 from fogproof.errors import UnsupportedError
-from fogproof.scene.phase_functions import PhaseFunction
+from fogproof.scene.phase import PhaseFunction
 from fogproof.scene.shapes import Ball
 
 LARGEST_DEPTH = 2e4

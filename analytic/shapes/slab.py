@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fogproof.analytic.lights.environment import Answer, between_planes
-from fogproof.scene.phase_functions import PhaseFunction
+from fogproof.scene.phase import PhaseFunction
 from fogproof.scene.shapes import Slab
 
 

@@ -20,7 +20,7 @@ from fogproof.scene.lights import KINDS as LIGHTS
 from fogproof.scene.lights import PointLight
 from fogproof.scene.media import MEDIA
 from fogproof.scene.occluders import KINDS as OCCLUDERS
-from fogproof.scene.phase_functions import PHASE_FUNCTIONS
+from fogproof.scene.phase import KINDS as PHASE_FUNCTIONS
 from fogproof.scene.shapes import KINDS as SHAPES
 
 PROTOCOL = "fogproof/oracle/1"
