@@ -117,7 +117,13 @@ class Prepared:
             pole = float(low + (1 - high))
         p = self.subject.density(points)
         return expected_repeats(
-            min(n, KEPT), self.subject.domain, self.subject.precision, points, np.where(np.isfinite(p), p, 0.0), pole
+            min(n, KEPT),
+            self.subject.domain,
+            self.subject.precision,
+            points,
+            np.where(np.isfinite(p), p, 0.0),
+            pole,
+            self.subject.uniform_bits,
         )
 
     def refined(self, tally: Tally) -> Prepared:
