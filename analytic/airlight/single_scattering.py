@@ -11,24 +11,32 @@ from fogproof.analytic.airlight.directional_light import directional_light
 from fogproof.analytic.airlight.environment_light import environment_light
 from fogproof.analytic.airlight.integral import Method
 from fogproof.analytic.airlight.point_light import point_light
+from fogproof.analytic.declaration import FOG, FORWARD, LAMP, RADIANCE, RAY, quantity
 from fogproof.analytic.geometry.convex_shapes import contains
 from fogproof.analytic.geometry.flat_rays import FlatRays, blocks_of
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError, UnsupportedError
 from fogproof.scene import AnyMedium, Medium, Ray
-from fogproof.scene.lights import DirectionalLight, Environment, Light, PointLight, SpotLight, strength
-from fogproof.scene.occluders import Occluder
-from fogproof.scene.shapes import Shape, Unbounded
+from fogproof.scene.lights import DirectionalLight, Environment, Light, LightField, PointLight, SpotLight, strength
+from fogproof.scene.media import AnyMediumField
+from fogproof.scene.occluders import Occluder, OccluderField
+from fogproof.scene.shapes import Shape, ShapeField, Unbounded
 from fogproof.validate import channel_count
 
 
+@quantity(
+    unit=RADIANCE,
+    convention="airlight alone, without the background; the light's intensity is in W/sr; " + FORWARD,
+    source="Sun, Ramamoorthi, Narasimhan & Nayar 2005, A practical analytic single scattering model",
+    example={"medium": {**FOG, "phase": {"kind": "henyey-greenstein", "g": 0.6}}, "ray": RAY, "light": LAMP},
+)
 def single_scattering(
-    medium: AnyMedium,
+    medium: AnyMediumField,
     ray: Ray,
-    light: Light,
+    light: LightField,
     *,
-    occluders: Sequence[Occluder] = (),
-    shape: Shape | None = None,
+    occluders: Sequence[OccluderField] = (),
+    shape: ShapeField | None = None,
     method: Method = "asinh",
 ) -> Reference:
     """Return the single-scattered radiance (airlight) along camera rays [W/(m^2 sr)].

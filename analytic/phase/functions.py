@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS
+from fogproof.analytic.declaration import FORWARD, quantity
 from fogproof.analytic.phase import draine as phase_draine
 from fogproof.analytic.phase import henyey_greenstein as phase_henyey_greenstein
 from fogproof.analytic.phase import isotropic as phase_isotropic
@@ -27,7 +28,8 @@ from fogproof.analytic.phase.inverse import inverse_cdf
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError
 from fogproof.scene import phase_functions as scene
-from fogproof.scene.phase_functions import PhaseFunction
+from fogproof.scene.arrays import FloatArray
+from fogproof.scene.phase_functions import PhaseFunction, PhaseFunctionField
 from fogproof.validate import as_float_array, require
 
 Parts = list[tuple[Fraction, PhaseFunction]]
@@ -57,7 +59,13 @@ is a closed form, `quantile(phase, xi)`; all return (value, error).
 """
 
 
-def phase_pdf(phase: PhaseFunction, mu: Any) -> Reference:
+@quantity(
+    unit="1/sr",
+    convention=FORWARD,
+    source="van de Hulst 1957, Light Scattering by Small Particles; each kind has its own",
+    example={"phase": {"kind": "henyey-greenstein", "g": 0.6}, "mu": [-1, -0.5, 0, 0.5, 0.9, 1]},
+)
+def phase_pdf(phase: PhaseFunctionField, mu: FloatArray) -> Reference:
     """Return the phase function f_p(mu) [1/sr].
 
     phase  a phase function of the scene description
@@ -69,7 +77,13 @@ def phase_pdf(phase: PhaseFunction, mu: Any) -> Reference:
     return _reference(parts, _method(parts), *_in_blocks(lambda x: _sum(parts, "pdf", x), _cosines(mu)))
 
 
-def phase_cdf(phase: PhaseFunction, mu: Any) -> Reference:
+@quantity(
+    unit="1",
+    convention="probability that the cosine is <= mu; " + FORWARD,
+    source="van de Hulst 1957, Light Scattering by Small Particles; each kind has its own",
+    example={"phase": {"kind": "henyey-greenstein", "g": 0.6}, "mu": [-1, -0.5, 0, 0.5, 0.9, 1]},
+)
+def phase_cdf(phase: PhaseFunctionField, mu: FloatArray) -> Reference:
     """Return the probability that the forward cosine is at most mu: 2 pi int_-1^mu f_p(m) dm.
 
     phase  a phase function of the scene description
@@ -82,7 +96,13 @@ def phase_cdf(phase: PhaseFunction, mu: Any) -> Reference:
     return _reference(parts, _method(parts), *_in_blocks(lambda x: _sum(parts, "cdf", x), _cosines(mu)))
 
 
-def phase_quantile(phase: PhaseFunction, xi: Any) -> Reference:
+@quantity(
+    unit="1",
+    convention="the cosine below which a share xi is scattered; " + FORWARD,
+    source="van de Hulst 1957, Light Scattering by Small Particles; each kind has its own",
+    example={"phase": {"kind": "henyey-greenstein", "g": 0.6}, "xi": [0, 0.1, 0.5, 0.9, 1]},
+)
+def phase_quantile(phase: PhaseFunctionField, xi: FloatArray) -> Reference:
     """Return the smallest forward cosine mu with phase_cdf(phase, mu) >= xi.
 
     phase  a phase function of the scene description
@@ -102,8 +122,17 @@ def phase_quantile(phase: PhaseFunction, xi: Any) -> Reference:
     return _reference(parts, f"root of the cdf ({_method(parts)})", value, error)
 
 
-def phase_mean_cosine(phase: PhaseFunction) -> Reference:
-    """Return g = 2 pi int_-1^1 f_p(mu) mu dmu, the mean forward cosine, of shape ()."""
+@quantity(
+    unit="1",
+    convention="g, the mean of mu; " + FORWARD,
+    source="van de Hulst 1957, Light Scattering by Small Particles; each kind has its own",
+    example={"phase": {"kind": "cornette-shanks", "g": 0.7}},
+)
+def phase_mean_cosine(phase: PhaseFunctionField) -> Reference:
+    """Return g = 2 pi int_-1^1 f_p(mu) mu dmu, the mean forward cosine, of shape ().
+
+    phase  a phase function of the scene description
+    """
     parts = weighted_parts(phase)
     return _reference(parts, _method(parts), *_sum(parts, "mean_cosine"))
 

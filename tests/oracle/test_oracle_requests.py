@@ -4,6 +4,7 @@ import json
 import subprocess
 import sys
 from pathlib import Path
+from types import FunctionType
 
 import jsonschema
 import numpy as np
@@ -23,6 +24,7 @@ LAMP = {"position": [1, 1, 0], "intensity": 3}
 HG = {"kind": "henyey-greenstein", "g": 0.6}
 MIXED = {"kind": "mixture", "components": [HG, {"kind": "rayleigh"}], "weights": [0.25, 0.75]}
 
+EXAMPLES = [{"quantity": name, **quantity.example} for name, quantity in quantities().items()]
 REQUESTS = [
     {"quantity": "optical_thickness", "medium": VOXELS, "ray": {**RAY, "origin": [0.5, 0.5, -2]}},
     {"quantity": "transmittance", "medium": FOG, "ray": {**RAY, "length": "inf"}},
@@ -73,11 +75,18 @@ def test_the_published_schema_is_current(published):
     jsonschema.Draft202012Validator.check_schema(published)
 
 
-def test_every_quantity_has_an_example():
-    assert {request["quantity"] for request in REQUESTS} == set(quantities())
+def test_every_public_function_is_a_quantity():
+    """A function that forgets to declare itself would not answer programs; only the golden tables are no question."""
+    functions = {name for name in analytic.__all__ if isinstance(getattr(analytic, name), FunctionType)}
+    assert functions - set(quantities()) == {"golden_values"}
 
 
-@pytest.mark.parametrize("request_", REQUESTS, ids=lambda r: r["quantity"])
+def test_every_argument_says_what_it_means():
+    silent = [f"{q.name}: {name}" for q in quantities().values() for name in q.arguments if not q.meanings.get(name)]
+    assert not silent, "add a line to the docstring"
+
+
+@pytest.mark.parametrize("request_", [*EXAMPLES, *REQUESTS], ids=lambda r: r["quantity"])
 def test_a_request_is_valid_and_answered(published, request_):
     jsonschema.validate(request_, published)
     answer = jsonable(answer_text(json.dumps(request_)))
