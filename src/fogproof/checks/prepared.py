@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -46,7 +47,7 @@ class Pilot:
     """A first sample: good points (n, ...) of the continuous part, usual event labels, and how many channels its weights have."""
 
     points: np.ndarray
-    labels: dict[float | None, int]
+    labels: dict[Any, int]
     channels: int
 
 
@@ -219,7 +220,7 @@ def _ranges(claim: Claim) -> Ranges:
 
 def _discrete(subject: Subject) -> Marginal:
     assert isinstance(subject.domain, Discrete)
-    n = subject.domain.n
+    n = int(subject.domain.n)
     mass = subject.density(np.arange(n, dtype=np.float64))
     mass = np.where(np.isfinite(mass) & (mass > 0), mass, 0.0)
     cdf = np.concatenate([[0.0], np.cumsum(mass)]) / (mass.sum() if mass.sum() > 0 else 1.0)

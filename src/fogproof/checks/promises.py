@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
-from fogproof.checks.subject import Subject, call, in_domain, nudged, rounding_spread
+from fogproof.checks.subject import Subject, call, in_domain, named, nudged, rounding_spread
 from fogproof.checks.verdict import Finding
 from fogproof.contracts import Draw
 from fogproof.errors import shorten
@@ -37,15 +38,15 @@ def inside(subject: Subject, draw: Draw) -> np.ndarray:
     return good if draw.valid is None else good | ~draw.valid
 
 
-def _places(subject: Subject, x: np.ndarray) -> dict[float | None, np.ndarray]:
+def _places(subject: Subject, x: np.ndarray) -> dict[Any, np.ndarray]:
     """Return which points (n,) are at each atom, by its point, and which are elsewhere, by None."""
-    places: dict[float | None, np.ndarray] = {None: ~at_any_atom(subject, x)}
+    places: dict[Any, np.ndarray] = {None: ~at_any_atom(subject, x)}
     for point, at in subject.at_atom(x).items():
         places[point] = at
     return places
 
 
-def usual_labels(subject: Subject, draw: Draw) -> dict[float | None, int]:
+def usual_labels(subject: Subject, draw: Draw) -> dict[Any, int]:
     """Return the usual event label at each atom (by its point) and elsewhere (None), as far as the batch shows them."""
     if draw.event is None:
         return {}
@@ -62,7 +63,7 @@ class Watch:
     """
 
     subject: Subject
-    labels: dict[float | None, int] = field(default_factory=dict)
+    labels: dict[Any, int] = field(default_factory=dict)
     broken: dict[str, tuple[int, str]] = field(default_factory=dict)
     seen: dict[str, int] = field(default_factory=dict)
 
@@ -110,7 +111,7 @@ class Watch:
         for point, hits in subject.at_atom(x).items():
             values, declared = returned[hits], subject.atoms[point]
             wrong = ~(np.abs(values - declared) <= 1e7 * subject.roundoff * declared)
-            text = f"at the atom {point:g}, declared {declared:.9g}"
+            text = f"at the atom {named(point)}, declared {declared:.9g}"
             self._note("returned probability", wrong, _quote("sample returned", values, text), len(wrong))
 
     def _weights(self, got: np.ndarray, points: np.ndarray) -> None:
@@ -142,7 +143,7 @@ class Watch:
             wrong = got != usual
             if place is not None and usual == self.labels.get(None):
                 wrong = np.ones(len(got), dtype=bool)
-            spot = "between the atoms" if place is None else f"at the atom {place:g}"
+            spot = "between the atoms" if place is None else f"at the atom {named(place)}"
             self._note("event", wrong, _quote("label", got, f"{spot}, where {usual} is usual"), len(got))
 
     def _note(self, name: str, bad: np.ndarray, tell: Callable[[int], str], n: int) -> None:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 
 from fogproof.contracts import Draw, Reference
-from fogproof.domains import Discrete, Domain, UnitDisk, UnitHemisphere, UnitSphere, UnitSquare, support
-from fogproof.errors import FogproofError, SubjectError, shorten
+from fogproof.domains import Discrete, Domain
+from fogproof.errors import FogproofError, InvalidValueError, SubjectError, shorten
+from fogproof.validate import number
 
 Precision = Literal["float64", "float32"]
 UNIT_ROUNDOFF: dict[Precision, float] = {"float64": 2.0**-53, "float32": 2.0**-24}
@@ -24,7 +25,7 @@ class Subject:
     pdf: Callable[[np.ndarray], Any]
     domain: Domain
     dimensions: int | None
-    atoms: Mapping[float, float] = field(default_factory=dict)
+    atoms: Mapping[Any, float] = field(default_factory=dict)
     cdf: Callable[[np.ndarray], Any] | None = None
     eval: Callable[[np.ndarray], Any] | None = None
     axis: tuple[float, float, float] | None = None
@@ -37,6 +38,23 @@ class Subject:
     def roundoff(self) -> float:
         """Unit roundoff of the arithmetic the sampler uses."""
         return UNIT_ROUNDOFF[self.precision]
+
+    def validate(self) -> None:
+        """Raise `InvalidValueError` if a declaration breaks a rule."""
+        if not isinstance(self.domain, Domain):
+            raise InvalidValueError("domain", "must be one of fogproof.domains, or have its parts", self.domain)
+        if self.dimensions is not None and not (isinstance(self.dimensions, int) and self.dimensions >= 1):
+            raise InvalidValueError("dimensions", "must be a whole number >= 1, or None", self.dimensions)
+        if self.precision not in get_args(Precision):
+            raise InvalidValueError("precision", "must be 'float64' or 'float32'", self.precision)
+        if self.atoms and isinstance(self.domain, Discrete):
+            raise InvalidValueError("atoms", "need a density: on Discrete the pdf is a probability", self.domain)
+        for point, probability in self.atoms.items():
+            number(f"atoms[{point!r}]", probability, "must be a probability in [0, 1]", 0, 1)
+            if np.shape(point) != self.domain.shape:
+                raise InvalidValueError("atoms", f"must be points of {self.domain}", point)
+        if self.mean_cosine is not None and self.axis is None:
+            raise InvalidValueError("axis", "must be given with mean_cosine", self.axis)
 
     def draw(self, rng: np.random.Generator, n: int) -> Draw:
         """Draw n samples, from uniforms or, where the sampler uses a varying number, from the generator itself.
@@ -56,21 +74,18 @@ class Subject:
         """Return pdf(x), (m,) float64."""
         return numbers("pdf(x)", call("pdf(x)", self.pdf, x), (len(x),))
 
-    def at_atom(self, x: np.ndarray) -> dict[float, np.ndarray]:
-        """Return for each declared atom which of the points are at it, in the sampler's precision."""
+    def at_atom(self, x: np.ndarray) -> dict[Any, np.ndarray]:
+        """Return for each declared atom which of the points are at it, in the sampler's precision.
+
+        A number must be the atom's; a point of several numbers, such as a mirrored direction, may differ from it by rounding.
+        """
+        if x.ndim > 1:
+            slack = 16 * self.roundoff
+            near = {point: np.abs(x - point) <= slack * (1 + np.abs(point)) for point in self.atoms}
+            return {point: each.all(axis=1) for point, each in near.items()}
         if self.precision == "float32":
             return {point: x.astype(np.float32) == np.float32(point) for point in self.atoms}
         return {point: x == point for point in self.atoms}
-
-
-def point_shape(domain: Domain) -> tuple[int, ...]:
-    """Return the shape of one point of the domain."""
-    match domain:
-        case UnitSphere() | UnitHemisphere():
-            return (3,)
-        case UnitDisk() | UnitSquare():
-            return (2,)
-    return ()
 
 
 def call(what: str, function: Callable[..., Any], *arguments: Any) -> Any:
@@ -99,7 +114,7 @@ def numbers(what: str, value: Any, shape: tuple[int, ...]) -> np.ndarray:
 def as_draw(result: Any, n: int, domain: Domain) -> Draw:
     """Return what a sampler returned as a `Draw` of n points; every array has the shape its contract promises."""
     draw = result if isinstance(result, Draw) else Draw(result)
-    x = numbers("sample: x", draw.x, (n, *point_shape(domain)))
+    x = numbers("sample: x", draw.x, (n, *domain.shape))
     pdf = None if draw.pdf is None else numbers("sample: pdf", draw.pdf, (n,))
     event = None if draw.event is None else numbers("sample: event", draw.event, (n,))
     valid = None if draw.valid is None else numbers("sample: valid", draw.valid, (n,)).astype(bool)
@@ -111,25 +126,7 @@ def as_draw(result: Any, n: int, domain: Domain) -> Draw:
 
 def in_domain(domain: Domain, x: np.ndarray, roundoff: float) -> np.ndarray:
     """Return which points lie in the domain, up to a few roundings; NaN and infinity do not."""
-    slack = 16 * roundoff
-    match domain:
-        case UnitSphere():
-            return np.abs(_squared(x) - 1) <= 2 * slack
-        case UnitHemisphere():
-            return (np.abs(_squared(x) - 1) <= 2 * slack) & (x[..., 2] >= -slack)
-        case UnitDisk():
-            return _squared(x) <= 1 + 2 * slack
-        case UnitSquare():
-            return np.all((x >= -slack) & (x <= 1 + slack), axis=-1)
-        case Discrete(n):
-            return (x == np.floor(x)) & (x >= 0) & (x < n)
-    low, high = support(domain)
-    scale = slack * max((abs(end) for end in (low, high) if np.isfinite(end)), default=0.0)
-    return np.isfinite(x) & (x >= low - scale) & (x <= high + scale)
-
-
-def _squared(x: np.ndarray) -> np.ndarray:
-    return np.einsum("...i,...i->...", x, x)
+    return domain.contains(x, 16 * roundoff)
 
 
 def nudged(x: np.ndarray, roundoff: float) -> list[np.ndarray]:
@@ -154,3 +151,8 @@ def rounding_spread(f: Callable[[np.ndarray], np.ndarray], x: np.ndarray, roundo
     y = f(x)
     moves = np.sum([np.abs(f(z) - y) for z in nudged(x, roundoff)], axis=0)
     return 64 * roundoff * np.abs(y) + 2 * np.nan_to_num(moves, nan=np.inf)
+
+
+def named(point: Any) -> str:
+    """Return an atom's point in words."""
+    return f"({', '.join(f'{number:g}' for number in point)})" if isinstance(point, tuple) else f"{point:g}"

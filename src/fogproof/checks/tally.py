@@ -47,7 +47,7 @@ class Tally:
     fine: tuple[np.ndarray, ...]
     plane: np.ndarray | None
     extremes: np.ndarray
-    atoms: dict[float, int]
+    atoms: dict[Any, int]
     serial: Successions | None
     prints: np.ndarray
     weights: tuple[Moments, ...]
@@ -97,7 +97,7 @@ class Tally:
             "fine": [_packed(counts) for counts in self.fine],
             "plane": None if self.plane is None else _packed(self.plane),
             "extremes": _packed(self.extremes),
-            "atoms": [[float.hex(point), hits] for point, hits in self.atoms.items()],
+            "atoms": [[_written(point), hits] for point, hits in self.atoms.items()],
             "serial": None
             if serial is None
             else [[_packed(part) for part in (serial.sums, serial.products, serial.squares)], serial.n, serial.pairs],
@@ -119,7 +119,7 @@ class Tally:
             tuple(_unpacked(text) for text in state["fine"]),
             None if state["plane"] is None else _unpacked(state["plane"]),
             _unpacked(state["extremes"]),
-            {float.fromhex(point): hits for point, hits in state["atoms"]},
+            {_read(point): hits for point, hits in state["atoms"]},
             None if serial is None else _successions(serial),
             _unpacked(state["prints"]),
             tuple(Moments.from_dict(moments) for moments in state["weights"]),
@@ -143,7 +143,7 @@ class Counter:
     grid: Grid
     count: Any
     ranges: Ranges | None
-    labels: dict[float | None, int]
+    labels: dict[Any, int]
     scores: tuple[np.ndarray, ...]
     fingerprinted: bool
 
@@ -199,6 +199,14 @@ class Counter:
 def _successions(state: list[Any]) -> Successions:
     sums, products, squares = (_unpacked(part) for part in state[0])
     return Successions(sums, products, squares, state[1], state[2])
+
+
+def _written(point: Any) -> Any:
+    return [float(number).hex() for number in point] if isinstance(point, tuple) else float(point).hex()
+
+
+def _read(point: Any) -> Any:
+    return tuple(map(float.fromhex, point)) if isinstance(point, list) else float.fromhex(point)
 
 
 def _packed(array: np.ndarray) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from fogproof.errors import FogproofError
+from fogproof.errors import FogproofError, UnsupportedError
 
 Outcome = Literal["rejected", "not rejected", "inconclusive"]
 
@@ -17,6 +17,12 @@ class RejectedError(FogproofError, AssertionError):
     """A check rejected its subject; the message explains. It is an `AssertionError`, so test runners show a failure."""
 
     code = "rejected"
+
+
+class InconclusiveError(FogproofError, AssertionError):
+    """A check could not tell; the message says what would decide. It is an `AssertionError` too: unproven is no pass."""
+
+    code = "inconclusive"
 
 
 @dataclass(frozen=True)
@@ -126,6 +132,19 @@ class Verdict:
         """Raise `RejectedError` with the whole explanation if the outcome is "rejected"."""
         if self.outcome == "rejected":
             raise RejectedError(str(self))
+
+    def raise_unless_passed(self) -> None:
+        """Raise `RejectedError` or `InconclusiveError` with the whole explanation unless the outcome is "not rejected"."""
+        self.raise_if_rejected()
+        if self.outcome == "inconclusive":
+            raise InconclusiveError(str(self))
+
+    def __bool__(self) -> bool:
+        raise UnsupportedError(
+            f"a verdict is not true or false: it is rejected, not rejected or inconclusive (this one: {self.outcome});"
+            ' write verdict.raise_unless_passed(), or compare verdict.outcome == "not rejected"',
+            "verdict",
+        )
 
     def __str__(self) -> str:
         lines = [f"{self.outcome} (alpha {self.alpha:g}, {self.samples} samples, seed {self.seed})"]
