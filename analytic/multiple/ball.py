@@ -28,7 +28,7 @@ from fogproof.analytic.multiple.scattering_arguments import checked_albedo, chec
 from fogproof.analytic.multiple.slab_modes import quadrature
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError
-from fogproof.scene.arrays import FloatArray
+from fogproof.scene.arrays import Count, FloatArray
 from fogproof.validate import require
 
 METHOD = "discrete ordinates in the equivalent slab"
@@ -115,7 +115,7 @@ def ball_radiance(albedo: FloatArray, radius: FloatArray, impact: FloatArray) ->
     source="Davison & Sykes 1957, Neutron Transport Theory, section 7",
     example={"radius": 1, "count": 3},
 )
-def ball_albedo_orders(radius: float, count: int) -> Reference:
+def ball_albedo_orders(radius: float, count: Count) -> Reference:
     """Return the share of the light that leaves a ball after n scatterings at albedo 1, n = 0 … count: (count + 1,).
 
     radius  in mean free paths, >= 0, one number
@@ -132,7 +132,7 @@ def ball_albedo_orders(radius: float, count: int) -> Reference:
     source="Davison & Sykes 1957, Neutron Transport Theory, section 7",
     example={"radius": 1, "impact": [0, 0.5], "count": 3},
 )
-def ball_radiance_orders(radius: float, impact: FloatArray, count: int) -> Reference:
+def ball_radiance_orders(radius: float, impact: FloatArray, count: Count) -> Reference:
     """Return `ball_radiance` order by order at albedo 1, n = 0 … count: (..., count + 1).
 
     radius  in mean free paths, >= 0, one number

@@ -13,7 +13,7 @@ from fogproof.analytic.multiple.chandrasekhar_h import METHOD, RELATIVE_ERROR, a
 from fogproof.analytic.multiple.orders import taylor_coefficients
 from fogproof.analytic.multiple.scattering_arguments import checked_albedo, checked_cosine, checked_count
 from fogproof.contracts import Reference
-from fogproof.scene.arrays import FloatArray
+from fogproof.scene.arrays import Count, FloatArray
 
 SOURCE = "Chandrasekhar 1960, Radiative Transfer, sections 33 and 39"
 
@@ -47,7 +47,7 @@ def half_space_reflectance(albedo: FloatArray, mu0: FloatArray) -> Reference:
     source="Chandrasekhar 1960, Radiative Transfer, section 33, eq. 81",
     example={"mu0": [0.2, 0.5, 1], "count": 3},
 )
-def half_space_reflectance_orders(mu0: FloatArray, count: int) -> Reference:
+def half_space_reflectance_orders(mu0: FloatArray, count: Count) -> Reference:
     """Return the share R_n of a beam that is reflected after n scatterings at albedo 1, n = 0 … count: (..., count + 1).
 
     mu0    (...) cosine of the beam to the normal, in (0, 1]

@@ -20,7 +20,7 @@ from fogproof.analytic.declaration import MEAN_FREE_PATHS, quantity
 from fogproof.analytic.multiple.orders import taylor_coefficients
 from fogproof.analytic.multiple.scattering_arguments import checked_albedo, checked_count, checked_length
 from fogproof.contracts import Reference
-from fogproof.scene.arrays import FloatArray
+from fogproof.scene.arrays import Count, FloatArray
 from fogproof.validate import as_float_array, require
 
 METHOD = "closed form"
@@ -66,7 +66,7 @@ def rod_transmittance(albedo: FloatArray, length: FloatArray, g: FloatArray = 0.
     source="Hoogenboom 2008, The two-direction neutral-particle transport model; Schuster 1905",
     example={"length": 2, "count": 3, "g": [0, 0.5]},
 )
-def rod_reflectance_orders(length: FloatArray, count: int, g: FloatArray = 0.0) -> Reference:
+def rod_reflectance_orders(length: FloatArray, count: Count, g: FloatArray = 0.0) -> Reference:
     """Return what a rod sends back after n scatterings at albedo 1, n = 0 … count: (..., count + 1).
 
     length  (...) in mean free paths, >= 0
@@ -88,7 +88,7 @@ def rod_reflectance_orders(length: FloatArray, count: int, g: FloatArray = 0.0) 
     source="Hoogenboom 2008, The two-direction neutral-particle transport model; Schuster 1905",
     example={"length": 2, "count": 3, "g": [0, 0.5]},
 )
-def rod_transmittance_orders(length: FloatArray, count: int, g: FloatArray = 0.0) -> Reference:
+def rod_transmittance_orders(length: FloatArray, count: Count, g: FloatArray = 0.0) -> Reference:
     """Return what passes a rod after n scatterings at albedo 1, n = 0 … count: (..., count + 1).
 
     length  (...) in mean free paths, >= 0

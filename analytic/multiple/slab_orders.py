@@ -17,7 +17,7 @@ from fogproof.analytic.multiple.slab_modes import SOURCE
 from fogproof.analytic.multiple.slab_solution import Leaving, leaving_slab, nodes_inside
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError
-from fogproof.scene.arrays import FloatArray
+from fogproof.scene.arrays import Count, FloatArray
 from fogproof.scene.phase_functions import Isotropic, PhaseFunctionField
 
 FEWEST_NODES, MOST_NODES = 14, 32
@@ -34,7 +34,7 @@ NEGLIGIBLE = 1e-7
     example={"tau": 1, "mu0": [0.2, 0.5, 1], "count": 3},
 )
 def slab_reflectance_orders(
-    tau: float, mu0: FloatArray, count: int, phase: PhaseFunctionField | None = None
+    tau: float, mu0: FloatArray, count: Count, phase: PhaseFunctionField | None = None
 ) -> Reference:
     """Return the share R_n of a beam that a slab reflects after n scatterings at albedo 1, n = 0 … count: (..., count + 1).
 
@@ -55,7 +55,7 @@ def slab_reflectance_orders(
     example={"tau": 1, "mu0": [0.2, 0.5, 1], "count": 3},
 )
 def slab_transmittance_orders(
-    tau: float, mu0: FloatArray, count: int, phase: PhaseFunctionField | None = None
+    tau: float, mu0: FloatArray, count: Count, phase: PhaseFunctionField | None = None
 ) -> Reference:
     """Return the share of a beam that passes a slab after n scatterings at albedo 1, see `slab_reflectance_orders`."""
     return _orders(tau, mu0, count, phase, lambda leaving: leaving.transmitted, slab_transmittance)

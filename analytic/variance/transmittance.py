@@ -78,7 +78,9 @@ def transmittance_second_moment(
 def transmittance_variance(
     medium: AnyMediumField, ray: Ray, tracking: Tracking, majorant: ChannelArray = None, control: ChannelArray = 0.0
 ) -> Reference:
-    """Return Var[w] = E[w^2] - T^2 of one realisation; arguments, shape and error as for the second moment.
+    """Return Var[w] = E[w^2] - T^2 of one realisation.
+
+    Arguments, shape and error as in `transmittance_second_moment`.
 
     Nothing cancels: delta T (1 - T), ratio T^2 (exp(V) - 1) with V = int (sigma_t - control)^2/majorant dt.
     """
@@ -108,7 +110,7 @@ def transmittance_lookups(
     """Return the expected number of look-ups of sigma_t of one realisation, shape R or R + (channels,).
 
     Delta tracking stops at its first real collision: int majorant T dt. The others go on to the end: int majorant dt.
-    Arguments as for the second moment. Error: a few EPS relative; delta in a heterogeneous medium, estimated.
+    Arguments as for `transmittance_second_moment`. Error: a few EPS relative; delta in a heterogeneous medium, estimated.
     """
     channels = channels_of(medium, majorant=_majorant(majorant))
     _moments(medium, ray, tracking, majorant, control)  # checks the arguments

@@ -11,7 +11,7 @@ import inspect
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from types import FunctionType
 from typing import Any, get_type_hints
 
@@ -44,7 +44,22 @@ class Quantity:
     source: str
     example: dict[str, Any]
 
-    @property
+    def to_dict(self) -> dict[str, Any]:
+        """Return what is known of the quantity, JSON-ready; an argument that may be left out is marked so."""
+        return {
+            "quantity": self.name,
+            "summary": self.summary,
+            "unit": self.unit,
+            "convention": self.convention,
+            "arguments": {
+                name: {"meaning": self.meanings.get(name, ""), "required": not isinstance(declared, tuple)}
+                for name, declared in self.arguments.items()
+            },
+            "source": self.source,
+            "example": {"quantity": self.name, **self.example},
+        }
+
+    @cached_property
     def arrays(self) -> dict[str, Numbers]:
         """Arguments that are arrays of numbers, those of rays included: "ray.length" and the like."""
         return dict(_arrays(self.arguments))

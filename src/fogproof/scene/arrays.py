@@ -55,3 +55,17 @@ AxisArray = Annotated[Any, Numbers(table=True)]
 
 ChannelArray = Annotated[Any, _GreyOrChannels()]
 """A number, or one number a channel."""
+
+
+@dataclass(frozen=True)
+class _Whole:
+    """Tells pydantic to read a whole number >= 0."""
+
+    def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> Any:
+        from pydantic_core import core_schema
+
+        return core_schema.int_schema(ge=0, strict=True)
+
+
+Count = Annotated[int, _Whole()]
+"""A whole number n >= 0; the answer has n + 1 values along its last axis."""
