@@ -22,7 +22,7 @@ from fogproof.analytic.multiple.slab_solution import Leaving, leaving_slab, node
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError, UnsupportedError
 from fogproof.scene.arrays import FloatArray
-from fogproof.scene.phase_functions import Isotropic, PhaseFunction, PhaseFunctionField
+from fogproof.scene.phase import Isotropic, PhaseFunction, PhaseFunctionField
 from fogproof.validate import number
 
 METHOD = "discrete ordinates"

@@ -18,7 +18,7 @@ from fogproof.analytic.multiple.slab_solution import Leaving, leaving_slab, node
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError
 from fogproof.scene.arrays import Count, FloatArray
-from fogproof.scene.phase_functions import Isotropic, PhaseFunctionField
+from fogproof.scene.phase import Isotropic, PhaseFunctionField
 
 FEWEST_NODES, MOST_NODES = 14, 32
 """Half the number of nodes: complex modes cost more than real ones."""

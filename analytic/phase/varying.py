@@ -14,7 +14,7 @@ from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError
 from fogproof.scene import Ramp, VaryingPhase
 from fogproof.scene.arrays import FloatArray, PointArray
-from fogproof.scene.varying_phase import AnyPhaseField
+from fogproof.scene.phase import AnyPhaseField
 from fogproof.validate import as_float_array, points, require
 
 

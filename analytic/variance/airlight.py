@@ -28,7 +28,7 @@ from fogproof.analytic.rays.compositing import phi1
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError, UnsupportedError
 from fogproof.scene.arrays import FloatArray
-from fogproof.scene.phase_functions import Isotropic, PhaseFunctionField
+from fogproof.scene.phase import Isotropic, PhaseFunctionField
 from fogproof.validate import as_float_array, require
 
 Sampling = Literal["equiangular", "free-path", "distance", "uniform"]
