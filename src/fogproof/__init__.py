@@ -10,7 +10,24 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 from fogproof.contracts import Draw, Draws, Estimator, Reference, Sampler
-from fogproof.domains import Discrete, HalfLine, Interval, RealLine, UnitDisk, UnitHemisphere, UnitSphere, UnitSquare
+from fogproof.domains import (
+    Ball,
+    Box,
+    Discrete,
+    HalfLine,
+    Interval,
+    Product,
+    RealLine,
+    Rectangle,
+    Rotations,
+    SpherePart,
+    SphericalTriangle,
+    Triangle,
+    UnitDisk,
+    UnitHemisphere,
+    UnitSphere,
+    UnitSquare,
+)
 from fogproof.errors import FogproofError, InvalidValueError
 from fogproof.scene import HenyeyGreenstein, Isotropic, Medium, PointLight, Ray, Rayleigh, Scene
 
@@ -23,6 +40,8 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "Ball",
+    "Box",
     "Discrete",
     "Draw",
     "Draws",
@@ -36,12 +55,18 @@ __all__ = [
     "Isotropic",
     "Medium",
     "PointLight",
+    "Product",
     "Ray",
     "Rayleigh",
     "RealLine",
+    "Rectangle",
     "Reference",
+    "Rotations",
     "Sampler",
     "Scene",
+    "SpherePart",
+    "SphericalTriangle",
+    "Triangle",
     "UnitDisk",
     "UnitHemisphere",
     "UnitSphere",
