@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS
+from fogproof.analytic.declaration import quantity
 from fogproof.analytic.multiple.isotropic_modes import isotropic_modes
 from fogproof.analytic.multiple.legendre_modes import legendre_modes
 from fogproof.analytic.multiple.scattering_arguments import checked_albedo, checked_cosine, checked_length
@@ -20,7 +21,8 @@ from fogproof.analytic.multiple.slab_solution import Leaving, leaving_slab, node
 from fogproof.analytic.phase.functions import phase_legendre_moments
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError, UnsupportedError
-from fogproof.scene.phase import Isotropic, PhaseFunction
+from fogproof.scene.arrays import FloatArray
+from fogproof.scene.phase import Isotropic, PhaseFunction, PhaseFunctionField
 from fogproof.validate import number
 
 METHOD = "discrete ordinates"
@@ -42,8 +44,18 @@ NEGLIGIBLE = 1e-8
 """Legendre moment below which the moments of a phase function are cut off, unless MOST_NODES come first."""
 
 
+@quantity(
+    unit="1",
+    convention="share of a beam of cosine mu0 to the normal, all directions and orders of scattering; tau is the optical thickness",
+    source="Chandrasekhar 1960, Radiative Transfer, chapter 8; Stamnes, Tsay, Wiscombe & Jayaweera 1988",
+    example={"albedo": [0.5, 0.9, 1], "tau": 1, "mu0": 0.5},
+)
 def slab_reflectance(
-    albedo: Any, tau: Any, mu0: Any, phase: PhaseFunction | None = None, refractive_index: float = 1.0
+    albedo: FloatArray,
+    tau: FloatArray,
+    mu0: FloatArray,
+    phase: PhaseFunctionField | None = None,
+    refractive_index: float = 1.0,
 ) -> Reference:
     """Return the share of a beam that a slab reflects, over all directions and orders of scattering.
 
@@ -60,8 +72,18 @@ def slab_reflectance(
     return _directional(albedo, tau, mu0, phase, refractive_index, lambda leaving: leaving.reflected)
 
 
+@quantity(
+    unit="1",
+    convention="share of a beam of cosine mu0 to the normal, scattered or not; tau is the optical thickness",
+    source="Chandrasekhar 1960, Radiative Transfer, chapter 8; Stamnes, Tsay, Wiscombe & Jayaweera 1988",
+    example={"albedo": [0.5, 0.9, 1], "tau": 1, "mu0": 0.5},
+)
 def slab_transmittance(
-    albedo: Any, tau: Any, mu0: Any, phase: PhaseFunction | None = None, refractive_index: float = 1.0
+    albedo: FloatArray,
+    tau: FloatArray,
+    mu0: FloatArray,
+    phase: PhaseFunctionField | None = None,
+    refractive_index: float = 1.0,
 ) -> Reference:
     """Return the share of a beam that passes a slab, scattered or not; arguments and error as in `slab_reflectance`.
 
@@ -70,8 +92,18 @@ def slab_transmittance(
     return _directional(albedo, tau, mu0, phase, refractive_index, lambda leaving: leaving.transmitted)
 
 
+@quantity(
+    unit="1",
+    convention="radiance at cosine mu0 where L_e = 1, cold surroundings; also the share absorbed of a beam",
+    source="Chandrasekhar 1960, Radiative Transfer, chapter 8; Stamnes, Tsay, Wiscombe & Jayaweera 1988",
+    example={"albedo": [0.5, 0.9, 1], "tau": 1, "mu0": 0.5},
+)
 def slab_emissivity(
-    albedo: Any, tau: Any, mu0: Any, phase: PhaseFunction | None = None, refractive_index: float = 1.0
+    albedo: FloatArray,
+    tau: FloatArray,
+    mu0: FloatArray,
+    phase: PhaseFunctionField | None = None,
+    refractive_index: float = 1.0,
 ) -> Reference:
     """Return the radiance at cosine mu0 of a slab that emits L_e = 1 in cold surroundings; also the share absorbed of a beam.
 
@@ -83,15 +115,27 @@ def slab_emissivity(
     )
 
 
+@quantity(
+    unit="1",
+    convention="share of diffuse light, the same from all directions of one side; tau is the optical thickness",
+    source="Chandrasekhar 1960, Radiative Transfer, chapter 8; Stamnes, Tsay, Wiscombe & Jayaweera 1988",
+    example={"albedo": [0.5, 0.9, 1], "tau": 1},
+)
 def slab_diffuse_reflectance(
-    albedo: Any, tau: Any, phase: PhaseFunction | None = None, refractive_index: float = 1.0
+    albedo: FloatArray, tau: FloatArray, phase: PhaseFunctionField | None = None, refractive_index: float = 1.0
 ) -> Reference:
     """Return the share of diffuse light that a slab reflects; arguments and error as in `slab_reflectance`."""
     return _diffuse(albedo, tau, phase, refractive_index, lambda leaving: leaving.diffuse_reflected)
 
 
+@quantity(
+    unit="1",
+    convention="share of diffuse light, the same from all directions of one side; tau is the optical thickness",
+    source="Chandrasekhar 1960, Radiative Transfer, chapter 8; Stamnes, Tsay, Wiscombe & Jayaweera 1988",
+    example={"albedo": [0.5, 0.9, 1], "tau": 1},
+)
 def slab_diffuse_transmittance(
-    albedo: Any, tau: Any, phase: PhaseFunction | None = None, refractive_index: float = 1.0
+    albedo: FloatArray, tau: FloatArray, phase: PhaseFunctionField | None = None, refractive_index: float = 1.0
 ) -> Reference:
     """Return the share of diffuse light that passes a slab; arguments and error as in `slab_reflectance`."""
     return _diffuse(albedo, tau, phase, refractive_index, lambda leaving: leaving.diffuse_transmitted)
