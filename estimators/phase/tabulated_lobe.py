@@ -71,7 +71,7 @@ def tabulated_lobe(phase: PhaseFunction) -> Tabled:
         c = np.where(near, 2 - (bad.v0 + bad.v1) / 2, (bad.c0 + bad.c1) / 2)
         halves = _fit(phase, *(np.concatenate(x) for x in ((bad.v0, v), (v, bad.v1), (bad.c0, c), (c, bad.c1))))
         cells = _Cells(*(np.concatenate([x[~worst], y]) for x, y in zip(cells, halves, strict=True)))
-    order = np.argsort(cells.v0)
+    order = np.lexsort((-cells.c0, cells.v0))  # at the back versines are equal where coversines are not
     cells = _Cells(*(x[order] for x in cells))
     found = float(cells.mass.sum())
     total += abs(found - 1)

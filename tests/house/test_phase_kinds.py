@@ -20,11 +20,10 @@ NOT_PROVEN = {
 """Kinds without `ball` and `peak`."""
 
 FOR_ITS_KIND = {
-    "analytic/airlight/environment_light.py": "isotropic scattering needs no integral over the angle to the ray",
+    "analytic/lights/environment.py": "isotropic scattering needs no integral over the angle to the ray",
     "analytic/airlight/pegoraro2009.py": "a published method for isotropic scattering only",
     "analytic/airlight/pegoraro2010.py": "a published method whose series are per kind",
     "analytic/airlight/sun2005.py": "a published method for isotropic scattering only",
-    "analytic/airlight/by_quadrature.py": "places of two phase functions at once",
     "analytic/multiple/slab.py": "isotropic scattering has a solver of its own",
     "src/fogproof/study/methods/paths.py": "the half space is solved for isotropic scattering only",
 }
