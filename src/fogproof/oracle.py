@@ -17,7 +17,7 @@ from fogproof.quantities import quantities
 from fogproof.scene import Medium
 from fogproof.scene.files import input_model, read_fields
 from fogproof.scene.lights import LIGHTS, PointLight
-from fogproof.scene.media import MEDIA
+from fogproof.scene.media import KINDS as MEDIA
 from fogproof.scene.occluders import OCCLUDERS
 from fogproof.scene.phase_functions import PHASE_FUNCTIONS
 
