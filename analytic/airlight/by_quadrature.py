@@ -24,9 +24,9 @@ from fogproof.analytic.geometry.flat_rays import FlatRays
 from fogproof.analytic.geometry.shadows import shadow_of_direction, shadow_of_point
 from fogproof.analytic.media.breakpoints import breakpoints
 from fogproof.analytic.media.coefficients import coefficients
+from fogproof.analytic.media.thickness import thickness
 from fogproof.analytic.phase.functions import phase_pdf
 from fogproof.analytic.phase.varying import share_at
-from fogproof.analytic.rays.transmittance import thickness
 from fogproof.errors import UnsupportedError
 from fogproof.scene import AnyMedium, Medium, Ray, VaryingPhase
 from fogproof.scene.lights import DirectionalLight, PointLight, SpotLight, strength

@@ -8,7 +8,7 @@ import numpy as np
 
 from fogproof.errors import InvalidValueError
 from fogproof.scene.arrays import FloatArray
-from fogproof.scene.media.common import cells_of_channel, cells_vary, read_only, set_cells
+from fogproof.scene.media.common import cell_channels, cells_of_channel, cells_vary, read_only, set_cells
 from fogproof.scene.phase_functions import Isotropic
 from fogproof.scene.varying_phase import AnyPhaseField, require_phase
 from fogproof.validate import as_float_array, require, unit_vectors
