@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from fogproof.errors import UnsupportedError
-from fogproof.scene.shapes import Ball, Box, Shape, Slab
+from fogproof.scene.kinds import given
+from fogproof.scene.shapes import Shape
 
 
 def extremes(vector: np.ndarray, shape: Shape) -> np.ndarray:
@@ -13,12 +14,9 @@ def extremes(vector: np.ndarray, shape: Shape) -> np.ndarray:
     length = float(np.linalg.norm(vector))
     if length == 0:
         return np.zeros((1, 3))
-    match shape:
-        case Ball(center, radius):
-            return np.array([center]) + radius * vector / length
-        case Box(lower, upper):
-            return np.where(vector > 0, upper, lower)[None]
-        case Slab(point, normal, thickness) if np.allclose(np.cross(vector, normal), 0, atol=1e-12 * length):
-            return np.array([point, np.subtract(point, np.multiply(thickness, normal))])
+    farthest = given(shape, "fogproof.estimators.shapes", "farthest")
+    points = None if farthest is None else farthest(shape, vector)
+    if points is not None:
+        return np.asarray(points)
     fix = "give a majorant, or a shape in which it is bounded"
     raise UnsupportedError(f"the extinction is not bounded in this {type(shape).__name__}; {fix}", "majorant")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numba
 import numpy as np
@@ -175,7 +175,7 @@ class Unheard:
 
     channels: None = None
     albedo: float = 0.0
-    phase: Isotropic = Isotropic()
+    phase: Isotropic = field(default_factory=Isotropic)
     emission: float = 0.0
 
 

@@ -13,7 +13,7 @@ from fogproof.scene.media import (
     VoxelGrid,
 )
 from fogproof.scene.occluders import Disk, Occluder, Sphere
-from fogproof.scene.phase_functions import (
+from fogproof.scene.phase import (
     CornetteShanks,
     DoubleHenyeyGreenstein,
     Draine,
@@ -24,14 +24,15 @@ from fogproof.scene.phase_functions import (
     Mixture,
     Murky,
     PhaseFunction,
+    Ramp,
     Rayleigh,
     Schlick,
     Tabulated,
+    VaryingPhase,
 )
 from fogproof.scene.rays import Ray
 from fogproof.scene.scenes import Scattering, Scene
 from fogproof.scene.shapes import Ball, Box, HalfSpace, Shape, Slab, Unbounded
-from fogproof.scene.varying_phase import Ramp, VaryingPhase
 
 __all__ = [
     "AnisotropicMedium",

@@ -22,7 +22,7 @@ def module_of(thing: Any, room: str) -> ModuleType | None:
 
     That of `HenyeyGreenstein(0.5)` is `fogproof.analytic.phase.henyey_greenstein`.
     """
-    return _module_of(type(thing), room)
+    return _imported(f"{room}.{type(thing).__module__.rpartition('.')[2]}")
 
 
 def given(thing: Any, room: str, name: str) -> Any:
@@ -31,8 +31,7 @@ def given(thing: Any, room: str, name: str) -> Any:
 
 
 @cache
-def _module_of(kind: type, room: str) -> ModuleType | None:
-    name = f"{room}.{kind.__module__.rpartition('.')[2]}"
+def _imported(name: str) -> ModuleType | None:
     try:
         return importlib.import_module(name)
     except ModuleNotFoundError as error:

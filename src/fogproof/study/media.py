@@ -19,7 +19,7 @@ from fogproof.scene.arrays import FloatArray
 from fogproof.scene.kinds import ByKind
 from fogproof.scene.media import KINDS as MEDIA
 from fogproof.scene.media.voxel_grid import Interpolation
-from fogproof.scene.phase_functions import PhaseFunctionField
+from fogproof.scene.phase import PhaseFunctionField
 from fogproof.scene.volume_files import read_voxel_grid
 from fogproof.validate import number
 

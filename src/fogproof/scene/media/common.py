@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from fogproof.errors import InvalidValueError
-from fogproof.scene.varying_phase import require_phase
+from fogproof.scene.phase import require_any_phase
 from fogproof.validate import Channels, as_float_array, channel_count, nonnegative_channels, require
 
 
@@ -65,7 +65,7 @@ def set_common(medium: Any) -> None:
     """Clean albedo, emission and phase function of a medium in which they are the same everywhere."""
     object.__setattr__(medium, "albedo", albedo_channels(medium.albedo))
     object.__setattr__(medium, "emission", nonnegative_channels("emission", medium.emission, "W/(m^2 sr)"))
-    require_phase("phase", medium.phase)
+    require_any_phase("phase", medium.phase)
     _ = medium.channels
 
 

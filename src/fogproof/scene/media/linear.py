@@ -9,8 +9,7 @@ import numpy as np
 from fogproof.errors import InvalidValueError
 from fogproof.scene.arrays import FloatArray
 from fogproof.scene.media.common import channel_of, channels_with, row, set_common, set_vectors, vector_of
-from fogproof.scene.phase_functions import Isotropic
-from fogproof.scene.varying_phase import AnyPhaseField
+from fogproof.scene.phase import AnyPhaseField, Isotropic
 from fogproof.validate import Channels, as_float_array, require
 
 

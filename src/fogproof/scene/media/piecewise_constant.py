@@ -9,8 +9,7 @@ import numpy as np
 from fogproof.errors import InvalidValueError
 from fogproof.scene.arrays import FloatArray
 from fogproof.scene.media.common import cell_channels, cells_of_channel, cells_vary, read_only, set_cells
-from fogproof.scene.phase_functions import Isotropic
-from fogproof.scene.varying_phase import AnyPhaseField, require_phase
+from fogproof.scene.phase import AnyPhaseField, Isotropic, require_any_phase
 from fogproof.validate import as_float_array, require, unit_vectors
 
 
@@ -45,7 +44,7 @@ class PiecewiseConstantMedium:
             raise InvalidValueError("axis", "must be one vector [x, y, z]", self.axis)
         object.__setattr__(self, "axis", axis)
         set_cells(self, (boundaries.size - 1,), "one value a layer, len(boundaries) - 1 of them")
-        require_phase("phase", self.phase)
+        require_any_phase("phase", self.phase)
 
     @property
     def channels(self) -> int | None:
