@@ -5,13 +5,20 @@ Written pointwise and without knowledge of rays, so that a closed form along a r
 
 from __future__ import annotations
 
+from itertools import product
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from fogproof.analytic.arithmetic.error_free import EPS, TINY
+from fogproof.analytic.declaration import quantity
+from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError, UnsupportedError
 from fogproof.scene import AnyMedium
+from fogproof.scene.arrays import PointArray
 from fogproof.scene.kinds import given
+from fogproof.scene.media import AnyMediumField
+from fogproof.validate import points, unit_vectors
 
 ROOM = "fogproof.analytic.media"
 
@@ -55,9 +62,42 @@ class Points(NamedTuple):
     shape: tuple[int, ...]
 
 
-def coefficients(medium: AnyMedium, x: Any, w: Any, channels: int | None = None) -> Coefficients:
+def _as_reference(medium: AnyMedium, x: Any, w: Any, channels: int | None = None) -> Reference:
+    """Return sigma_t, sigma_a, sigma_s and emission in a last axis of four.
+
+    Error: estimated, by how much they change where x moves by 8 EPS; beside a boundary that is the step across it.
+    """
+    x, w = points("x", x), unit_vectors("w", w)
+
+    def at(x: np.ndarray) -> np.ndarray:
+        return np.stack(coefficients(medium, x, w, channels), axis=-1)
+
+    value = at(x)
+    error = 32 * EPS * np.where(np.isfinite(value), np.abs(value), 0.0) + TINY
+    for axis, sign in product(np.eye(3), (-8, 8)):
+        moved = at(x + sign * EPS * np.abs(x) * axis)
+        with np.errstate(invalid="ignore"):
+            error = error + np.where(moved == value, 0.0, np.abs(moved - value))
+    return Reference(value, error, "the definition, pointwise", "the definition of the medium")
+
+
+@quantity(
+    unit="1/m, 1/m, 1/m, W/(m^2 sr)",
+    convention="sigma_t, sigma_a, sigma_s and emission L_e at the point x for light along w, in the last axis",
+    source="the definition of the medium",
+    example={
+        "medium": {"kind": "exponential", "sigma_0": 0.3, "rate": [0, 0, -0.5], "albedo": 0.9, "emission": 2},
+        "x": [[0, 0, 0], [0, 0, 1]],
+        "w": [0, 0, 1],
+    },
+    answer=_as_reference,
+)
+def coefficients(medium: AnyMediumField, x: PointArray, w: PointArray, channels: int | None = None) -> Coefficients:
     """Return the coefficients of the medium at the points x (..., 3) for light along w (..., 3), which broadcast.
 
+    medium    what the ray crosses
+    x         (..., 3) points [m]
+    w         (..., 3) unit vectors along the light's way
     channels  how many channels the result has, the medium's own unless given
 
     Plain float64 without an error bound: a few EPS relative, plus what the rounding of x means. In vacuum around a

@@ -2,20 +2,31 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
+from fogproof.analytic.declaration import RAY, quantity
 from fogproof.analytic.geometry.rays import channels_of, rays_with_channels
 from fogproof.analytic.media.coefficients import ROOM
 from fogproof.analytic.rays.bracketed_free_path import bracketed_free_path
 from fogproof.contracts import Reference
-from fogproof.scene import AnyMedium, Ray
+from fogproof.scene import Ray
+from fogproof.scene.arrays import FloatArray
 from fogproof.scene.kinds import given
+from fogproof.scene.media import AnyMediumField
 from fogproof.validate import as_float_array, require
 
 
-def free_path(medium: AnyMedium, ray: Ray, tau: Any) -> Reference:
+@quantity(
+    unit="m",
+    convention="distance at which the optical thickness is tau; inf where the ray ends or escapes before",
+    source="elementary: the optical thickness inverted",
+    example={
+        "medium": {"kind": "exponential", "sigma_0": 0.3, "rate": [0, 0, -0.5], "albedo": 0.9},
+        "ray": {**RAY, "length": "inf"},
+        "tau": [0.01, 0.1, 100],
+    },
+)
+def free_path(medium: AnyMediumField, ray: Ray, tau: FloatArray) -> Reference:
     """Return the smallest distance t [m] at which the optical thickness reaches tau, inf if the ray ends before.
 
     medium  of any kind; homogeneous, linear and exponential ones have a closed form, for the others the thickness is

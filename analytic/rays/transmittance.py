@@ -5,14 +5,22 @@ from __future__ import annotations
 import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
+from fogproof.analytic.declaration import RAY, quantity
 from fogproof.analytic.geometry.rays import channels_of
 from fogproof.analytic.media.thickness import survival, thickness
 from fogproof.analytic.proven.radiance import proven_thickness, proven_transmittance
 from fogproof.contracts import Reference
-from fogproof.scene import AnyMedium, Ray
+from fogproof.scene import Ray
+from fogproof.scene.media import AnyMediumField
 
 
-def optical_thickness(medium: AnyMedium, ray: Ray, *, rigorous: bool = False) -> Reference:
+@quantity(
+    unit="1",
+    convention="integral of sigma_t along the ray",
+    source="Bouguer 1729; Lambert 1760",
+    example={"medium": {"kind": "exponential", "sigma_0": 0.3, "rate": [0, 0, -0.5], "albedo": 0.9}, "ray": RAY},
+)
+def optical_thickness(medium: AnyMediumField, ray: Ray, *, rigorous: bool = False) -> Reference:
     """Return tau = integral of sigma_t along the ray, dimensionless, shape R or R + (channels,).
 
     rigorous  prove the result by ball arithmetic (any medium but a `Procedural` one; slow)
@@ -29,7 +37,13 @@ def optical_thickness(medium: AnyMedium, ray: Ray, *, rigorous: bool = False) ->
         return Reference(value, tau.error + np.where(np.isinf(value), 0.0, EPS * value + TINY), tau.method, tau.source)
 
 
-def transmittance(medium: AnyMedium, ray: Ray, *, rigorous: bool = False) -> Reference:
+@quantity(
+    unit="1",
+    convention="fraction of the radiance that arrives: exp(-optical thickness)",
+    source="Bouguer 1729; Lambert 1760",
+    example={"medium": {"kind": "exponential", "sigma_0": 0.3, "rate": [0, 0, -0.5], "albedo": 0.9}, "ray": RAY},
+)
+def transmittance(medium: AnyMediumField, ray: Ray, *, rigorous: bool = False) -> Reference:
     """Return T = exp(-tau), dimensionless, shape R or R + (channels,).
 
     rigorous  prove the result by ball arithmetic (any medium but a `Procedural` one; slow)
