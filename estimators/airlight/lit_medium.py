@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import get_args
 
@@ -23,7 +23,7 @@ from fogproof.scene.kinds import given
 from fogproof.scene.lights import Light
 from fogproof.scene.occluders import Occluder
 from fogproof.scene.phase import constant_phase
-from fogproof.scene.shapes import Shape, Unbounded
+from fogproof.scene.shapes import EVERYWHERE, Shape
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +42,7 @@ class LitMedium:
     ray: Ray
     light: Light
     occluders: tuple[Occluder, ...] = ()
-    shape: Shape = field(default_factory=Unbounded)
+    shape: Shape = EVERYWHERE
     shadow_rays: ShadowRays = "exact"
 
     def __post_init__(self) -> None:
@@ -52,7 +52,7 @@ class LitMedium:
             raise InvalidValueError(
                 "shadow_rays", f"must be one of {', '.join(get_args(ShadowRays))}", self.shadow_rays
             )
-        if not isinstance(self.shape, Unbounded) and given(self.medium, ROOM, "uniform") is None:
+        if self.shape != EVERYWHERE and given(self.medium, ROOM, "uniform") is None:
             raise UnsupportedError("only a homogeneous medium fills a shape", "shape")
 
     @cached_property
@@ -111,7 +111,7 @@ class LitMedium:
         mu, distance, irradiance = self._illumination(self.start + t)
         value = self.albedo * self.extinction.sigma(t) * phase_value(self.phase, mu) * irradiance
         uniform = given(self.medium, ROOM, "uniform")
-        plain = uniform is not None and isinstance(self.shape, Unbounded) and self.shadow_rays == "exact"
+        plain = uniform is not None and self.shape == EVERYWHERE and self.shadow_rays == "exact"
         if plain and not self.occluders:
             sigma_t = float(uniform(self.medium))
             return value * np.exp(-sigma_t * distance) if sigma_t > 0 else value, np.ones_like(t)
