@@ -15,13 +15,12 @@ import numpy as np
 from fogproof.contracts import Draws
 from fogproof.errors import InvalidValueError, UnsupportedError
 from fogproof.estimators.free_paths.fog import everywhere
-from fogproof.estimators.kernels.data import ChromaticFieldData, FieldData
 from fogproof.estimators.kernels.path_data import Plan
 from fogproof.estimators.paths import data as path_data
 from fogproof.estimators.tracking.majorant_grid import MajorantGrid
 from fogproof.estimators.tracking.tracked import refuse, single
 from fogproof.scene import AnyMedium, Ray
-from fogproof.scene.lights import DirectionalLight, Light, PointLight
+from fogproof.scene.lights import Light
 from fogproof.scene.shapes import Shape
 from fogproof.scene.surfaces import Surface
 from fogproof.validate import number
@@ -165,7 +164,7 @@ def run(
     from fogproof.estimators.kernels.compiling import uncached
 
     paths = Paths(np.empty((n, columns)), np.empty(n), np.empty(n, np.int64), np.empty(n))
-    if isinstance(scene[0], FieldData | ChromaticFieldData):
+    if getattr(scene[0], "of_user", False):
         kernel = uncached(kernel)
     refuse(*kernel(rng, *scene, np.array(origin), np.array(direction), *paths))
     return paths
@@ -178,7 +177,7 @@ def choose_gathering(
     if gathering not in (None, *get_args(Gathering)):
         raise InvalidValueError("gathering", f"must be one of {', '.join(get_args(Gathering))}", gathering)
     refracts = refractive_index != 1
-    if isinstance(light, PointLight | DirectionalLight):
+    if light is not None and light.delta:
         if gathering not in (None, "looked for"):
             raise InvalidValueError("gathering", "must be 'looked for': paths never meet such a light", gathering)
         if refracts or (surface is not None and surface.finish == "mirror" and surface.albedo > 0):

@@ -22,6 +22,7 @@ WEIGHTS = {
     "scan": 1.0,
     "ends": 0.5,
     "atom": 1.0,
+    "event": 0.5,
     "lost samples": 0.25,
     "mean weight": 0.5,
     "joint": 1.0,
@@ -30,6 +31,7 @@ WEIGHTS = {
     "patches": 0.5,
     "serial correlation": 0.25,
     "repeated points": 0.25,
+    "few values": 0.25,
 }
 """Relative shares of alpha. Errors that some tests exist for have p-values far below any share: these tests get little."""
 
