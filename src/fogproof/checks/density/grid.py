@@ -109,6 +109,12 @@ class Plane:
         """Rows, and columns, that are counted."""
         return len(self.shares[0])
 
+    def coarse(self, cells: list[np.ndarray]) -> np.ndarray:
+        """Return (n,) the coarse cell, row by row, of points in the given fine cells (n,) of the two axes."""
+        side, size = len(self.mass), self.size
+        first, second = (rows[cell] * side // size for rows, cell in zip(self.rows, cells, strict=True))
+        return np.asarray(first * side + second)
+
     def blur(self, size: int) -> np.ndarray:
         """Return (size, size) the probability that rounding moves into or out of each of as many cells."""
         if max(float(edges.max()) for edges in self.blurs) < _NO_BLUR:
