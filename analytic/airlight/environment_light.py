@@ -27,7 +27,7 @@ from fogproof.errors import UnsupportedError
 from fogproof.scene import AnyMedium, Medium
 from fogproof.scene.lights import Environment
 from fogproof.scene.occluders import Occluder
-from fogproof.scene.phase_functions import Isotropic, PhaseFunction
+from fogproof.scene.phase import Isotropic, PhaseFunction
 from fogproof.scene.shapes import Ball, HalfSpace, Shape, Slab, Unbounded
 
 METHOD = "double exponential rules over directions and along the ray"

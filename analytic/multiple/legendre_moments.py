@@ -6,7 +6,7 @@ import numpy as np
 
 from fogproof.analytic.multiple.slab_modes import legendre
 from fogproof.analytic.phase.functions import phase_pdf
-from fogproof.scene.phase_functions import HenyeyGreenstein, Isotropic, PhaseFunction, Rayleigh
+from fogproof.scene.phase import HenyeyGreenstein, Isotropic, PhaseFunction, Rayleigh
 
 NODES = 1024
 """Of the Gauss-Legendre rule for phase functions without a closed form."""

@@ -20,7 +20,7 @@ from fogproof.analytic.multiple.slab_modes import SOURCE
 from fogproof.analytic.multiple.slab_solution import Leaving, leaving_slab, nodes_inside
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError, UnsupportedError
-from fogproof.scene.phase_functions import Isotropic, PhaseFunction
+from fogproof.scene.phase import Isotropic, PhaseFunction
 from fogproof.validate import number
 
 METHOD = "discrete ordinates"

@@ -16,7 +16,7 @@ from fogproof.analytic.multiple.slab_modes import SOURCE
 from fogproof.analytic.multiple.slab_solution import Leaving, leaving_slab, nodes_inside
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError
-from fogproof.scene.phase_functions import Isotropic, PhaseFunction
+from fogproof.scene.phase import Isotropic, PhaseFunction
 
 FEWEST_NODES, MOST_NODES = 14, 32
 """Half the number of nodes: complex modes cost more than real ones."""

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from fogproof.analytic.airlight.phase import AirlightPhase, Array
 from fogproof.analytic.arithmetic.error_free import EPS
-from fogproof.scene.phase_functions import Tabulated
+from fogproof.scene.phase import Tabulated
 
 SOURCE = "trapezoidal rule, exact for the linear interpolant"
 METHOD = "closed form"
@@ -49,3 +50,20 @@ def mean_cosine(phase: Tabulated) -> tuple[float, float]:
     moment = np.pi / 3 * width * (left * (2 * f[:-1] + f[1:]) + right * (f[:-1] + 2 * f[1:]))
     size = np.pi / 3 * width * (np.abs(left) * (2 * f[:-1] + f[1:]) + np.abs(right) * (f[:-1] + 2 * f[1:]))
     return float(moment.sum() / upto[-1]), float((2 * rounding + 6 * EPS) * size.sum() / upto[-1])
+
+
+def airlight(phase: Tabulated) -> AirlightPhase:
+    """Return the linear interpolant of the table, divided by its integral; panels end at its cosines."""
+    cosines, values = np.array(phase.cosines), np.array(phase.values)
+    widths = np.diff(cosines)
+    F = values * (2 / float(np.sum(widths * (values[1:] + values[:-1])) / 2))
+    steep = float(np.max(np.abs(np.diff(F)) / widths))
+
+    def factor(w: Array, wt: Array) -> Array:
+        return np.interp((wt - w) / (wt + w), cosines, F)
+
+    def slope(low: Array, _high: Array) -> tuple[Array, Array]:
+        return np.zeros_like(low), np.full_like(low, steep)
+
+    eps = 6.0 + len(F) / 2
+    return AirlightPhase(factor, float(F.min()), float(F.max()), eps, slope, 4 * steep, 1, cosines[1:-1])

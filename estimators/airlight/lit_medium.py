@@ -20,6 +20,7 @@ from fogproof.estimators.phase.functions import phase_value
 from fogproof.scene import AnyMedium, Medium, PhaseFunction, Ray
 from fogproof.scene.lights import Environment, Light
 from fogproof.scene.occluders import Occluder
+from fogproof.scene.phase import constant_phase
 from fogproof.scene.shapes import Shape, Unbounded
 
 
@@ -82,9 +83,10 @@ class LitMedium:
     @property
     def phase(self) -> PhaseFunction:
         """The medium's phase function, the same everywhere."""
-        if isinstance(self.medium.phase, PhaseFunction):
-            return self.medium.phase
-        raise UnsupportedError("the phase function must be the same everywhere", "medium.phase")
+        phase = constant_phase(self.medium.phase)
+        if phase is None:
+            raise UnsupportedError("the phase function must be the same everywhere", "medium.phase")
+        return phase
 
     @cached_property
     def _illumination(self) -> Callable[[np.ndarray], Illumination]:

@@ -19,7 +19,7 @@ from fogproof.scene.files import input_model, read_fields
 from fogproof.scene.lights import LIGHTS, PointLight
 from fogproof.scene.media import MEDIA
 from fogproof.scene.occluders import OCCLUDERS
-from fogproof.scene.phase_functions import PHASE_FUNCTIONS
+from fogproof.scene.phase import KINDS as PHASE_FUNCTIONS
 
 PROTOCOL = "fogproof/oracle/1"
 

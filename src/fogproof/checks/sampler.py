@@ -18,19 +18,19 @@ from typing import Any
 
 import numpy as np
 
+from fogproof.checks.declared import declared, unchecked
 from fogproof.checks.diagnosis import likely_cause, mirrored
 from fogproof.checks.escalation import EARLY, Stage, doubtful, judged, stages, total_weight
 from fogproof.checks.figures import bins_figure, z_map_figure
 from fogproof.checks.prepared import Prepared, prepare
 from fogproof.checks.statistics.scan import blocks
-from fogproof.checks.streams import batch_generator, batch_sizes, fresh_seed
+from fogproof.checks.streams import batch_generator, batch_sizes
 from fogproof.checks.subject import Precision, Subject
 from fogproof.checks.suite import tests_of
 from fogproof.checks.tally import Tally
 from fogproof.checks.verdict import Finding, Verdict
 from fogproof.contracts import Reference
 from fogproof.domains import Domain, UnitSphere
-from fogproof.validate import number
 
 
 def check_sampler(
@@ -47,6 +47,9 @@ def check_sampler(
     albedo: float | tuple[float, ...] | None = None,
     reference: Callable[[np.ndarray], Reference] | None = None,
     precision: Precision = "float64",
+    events: Mapping[int, float] | None = None,
+    uniform_bits: int | None = None,
+    quasi_random: bool = False,
     resolution: float | None = None,
     samples: int = 1_000_000,
     alpha: float = 1e-6,
@@ -64,6 +67,9 @@ def check_sampler(
     albedo       the integral of `eval` over the domain, one number or one a channel; without `eval`, the mean weight
     reference    x -> `Reference`: what pdf(x) should be, from an independent source
     precision    "float32" if the sampler computes in single precision: uniforms and tolerances follow
+    events       {label: probability} of every event label that `Draw.event` may have
+    uniform_bits how many bits the uniforms inside the sampler have, if fewer than the precision's own: repeated values follow
+    quasi_random True if the points of one call are stratified or a low-discrepancy sequence: only their distribution is tested
     resolution   Kolmogorov distance to detect: the first look is sized for it, and a sampler that is clearly right stops there
     samples      most samples to draw
     alpha        false-alarm probability of this call with everything in it
@@ -83,6 +89,9 @@ def check_sampler(
             albedo,
             reference,
             precision,
+            dict(events or {}),
+            uniform_bits,
+            quasi_random,
         ),
         resolution,
         samples,
@@ -110,12 +119,7 @@ class SamplerCheck:
     def of(subject: Subject, resolution: float | None, samples: int, alpha: float, seed: int | None) -> SamplerCheck:
         """Validate the arguments, those of `check_sampler`, and ask all questions that need no samples."""
         started = time.perf_counter()
-        subject.validate()
-        number("alpha", alpha, "must lie in (0, 1)", 0, 1, open_ends=True)
-        number("samples", samples, "must be at least 100", 100)
-        if resolution is not None:
-            number("resolution", resolution, "must lie in (0, 1)", 0, 1, open_ends=True)
-        seed = fresh_seed() if seed is None else seed
+        subject, samples, seed = declared(subject, resolution, samples, alpha, seed)
         with np.errstate(all="ignore"):  # what is infinite or undefined is found, not warned of
             prepared = prepare(subject, samples, seed)
         weight = total_weight(tests_of(prepared, prepared.counter.empty()))
@@ -186,8 +190,18 @@ class SamplerCheck:
             f" seed={self.seed})"
         )
         seconds = time.perf_counter() - self.started
-        cause = likely_cause(findings)
-        return Verdict(tuple(findings), self.alpha, tally.drawn, self.seed, seconds, settings, cause, reproduce)
+        pilot = self.prepared.pilot
+        return Verdict(
+            tuple(findings),
+            self.alpha,
+            tally.drawn,
+            self.seed,
+            seconds,
+            settings,
+            likely_cause(findings),
+            reproduce,
+            unchecked=unchecked(subject, pilot.channels, bool(pilot.labels)),
+        )
 
 
 def judge(prepared: Prepared, tally: Tally, alpha: float, final: bool = True) -> list[Finding]:

@@ -60,6 +60,9 @@ def tests_of(prepared: Prepared, tally: Tally) -> list[Test]:
     rest, slack = 1 - sum(subject.atoms.values()), FLOOR[subject.precision]
     what, cause = "probability of the continuous part", wrong_atom if subject.atoms else "lost samples"
     add("lost samples", binomial, "continuous part", what, tally.continuous, n, rest - slack, rest + slack, cause)
+    for label, q in subject.events.items():
+        what, hits = f"probability of the event {label:g}", tally.events[float(label)]
+        add("event", binomial, "declared event", what, hits, n, q * (1 - 1e-15), q * (1 + 1e-15), "wrong event label")
     for point, q in subject.atoms.items():
         what = f"probability of the atom at {named(point)}"
         add("atom", binomial, "atom", what, tally.atoms[point], n, q * (1 - 1e-15), q * (1 + 1e-15), wrong_atom)

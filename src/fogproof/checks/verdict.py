@@ -99,6 +99,8 @@ class Verdict:
 
     cause      the likely class of error, "" if nothing was rejected
     reproduce  one line that repeats the check
+    diagnosis  the cause as a sentence: what explains the misfit, with its fitted parameter and how much is left
+    unchecked  what the subject returns and nothing was declared for
     """
 
     findings: tuple[Finding, ...]
@@ -109,6 +111,8 @@ class Verdict:
     settings: dict[str, Any] = field(default_factory=dict)
     cause: str = ""
     reproduce: str = ""
+    diagnosis: str = ""
+    unchecked: tuple[str, ...] = ()
 
     @property
     def outcome(self) -> Outcome:
@@ -149,7 +153,7 @@ class Verdict:
     def __str__(self) -> str:
         lines = [f"{self.outcome} (alpha {self.alpha:g}, {self.samples} samples, seed {self.seed})"]
         if self.cause:
-            lines.append(f"  likely: {self.cause}")
+            lines.append(f"  likely: {self.cause}" + (f"; {self.diagnosis}" if self.diagnosis else ""))
         order = {"rejected": 0, "inconclusive": 1, "not rejected": 2}
         for finding in sorted(self.findings, key=lambda f: order[f.outcome]):
             p = "" if finding.p_value is None else f" p = {finding.p_value:.3g}."
@@ -158,6 +162,7 @@ class Verdict:
             where = f"{where}." if where else ""
             size = f" Effect in {finding.interval}." if finding.interval and finding.outcome == "rejected" else ""
             lines.append(f"  {finding.outcome:12}  {finding.check}: {finding.message}.{where}{p}{size}{seen}")
+        lines += [f"  unchecked: {what}" for what in self.unchecked]
         if self.outcome != "not rejected" and self.reproduce:
             lines.append(f"  reproduce: {self.reproduce}")
         return "\n".join(lines)
@@ -176,6 +181,8 @@ class Verdict:
                 "resolution": self.resolution,
                 "cause": self.cause,
                 "reproduce": self.reproduce,
+                "diagnosis": self.diagnosis,
+                "unchecked": self.unchecked,
                 "findings": self.findings,
             }
         )

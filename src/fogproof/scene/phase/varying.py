@@ -10,8 +10,7 @@ import numpy as np
 
 from fogproof.errors import InvalidValueError
 from fogproof.scene.arrays import FloatArray
-from fogproof.scene.kinds import ByKind
-from fogproof.scene.phase_functions import PHASE_FUNCTIONS, PhaseFunction, PhaseFunctionField
+from fogproof.scene.phase.phase_function import PhaseFunctionField, require_phase
 from fogproof.validate import points
 
 
@@ -58,17 +57,6 @@ class VaryingPhase:
 
     def __post_init__(self) -> None:
         for name in ("first", "second"):
-            require_phase(name, getattr(self, name), PhaseFunction)
+            require_phase(name, getattr(self, name))
         if not (isinstance(self.share, Ramp) or callable(self.share)):
             raise InvalidValueError("share", "must be a Ramp or a function of points", self.share)
-
-
-AnyPhase = PhaseFunction | VaryingPhase
-AnyPhaseField = Annotated[AnyPhase, ByKind({**PHASE_FUNCTIONS, "varying": VaryingPhase})]
-"""What a heterogeneous medium may have as its phase function."""
-
-
-def require_phase(name: str, value: Any, allowed: Any = AnyPhase) -> None:
-    """Refuse what is not one of the allowed phase functions."""
-    if not isinstance(value, allowed):
-        raise InvalidValueError(name, "must be a phase function", value, "for example HenyeyGreenstein(g=0.5)")

@@ -1,7 +1,7 @@
 """Hazy and murky atmospheres (after Nishita, Miyawaki & Nakamae 1987): (1/2 + (n + 1)/2 u^n)/(4 pi), u = (1 + mu)/2.
 
 Half of the light is isotropic, u uniform; the other half has u = xi^(1/(n + 1)). One uniform serves both the choice and the
-value: |2 xi - 1| is exact and uniform in either half.
+value: |2 xi - 1| is exact and uniform in either half. n is a power of two.
 """
 
 from __future__ import annotations
@@ -9,18 +9,10 @@ from __future__ import annotations
 import numpy as np
 
 from fogproof.estimators.phase.polar import Polar
-from fogproof.scene import Hazy, Murky
-
-POWER: dict[type, int] = {Hazy: 8, Murky: 32}
-"""The exponent n of u."""
 
 
-def density(phase: Hazy | Murky, versine: np.ndarray, coversine: np.ndarray) -> np.ndarray:
+def density(n: int, coversine: np.ndarray) -> np.ndarray:
     """Return the phase function [1/sr]."""
-    return _density(POWER[type(phase)], coversine)
-
-
-def _density(n: int, coversine: np.ndarray) -> np.ndarray:
     power = 0.5 * coversine
     for _ in range(n.bit_length() - 1):  # n is a power of two
         power *= power
@@ -29,9 +21,8 @@ def _density(n: int, coversine: np.ndarray) -> np.ndarray:
     return power
 
 
-def cosines(phase: Hazy | Murky, xi: np.ndarray, out: np.ndarray) -> None:
+def cosines(n: int, xi: np.ndarray, out: np.ndarray) -> None:
     """Write forward cosines: u = v^1 or v^(1/(n + 1)), whichever half xi lies in, by one exponential for both."""
-    n = POWER[type(phase)]
     v = 2 * xi
     v -= 1
     power = np.sign(v)
@@ -46,9 +37,8 @@ def cosines(phase: Hazy | Murky, xi: np.ndarray, out: np.ndarray) -> None:
     out -= 1
 
 
-def polar(phase: Hazy | Murky, xi: np.ndarray) -> Polar:
+def polar(n: int, xi: np.ndarray) -> Polar:
     """Return scattering angles and their pdf."""
-    n = POWER[type(phase)]
     u = 2 * xi - 1
     lobe = u >= 0
     u = np.abs(u)
@@ -56,4 +46,4 @@ def polar(phase: Hazy | Murky, xi: np.ndarray) -> Polar:
         log = np.log(u) / (n + 1)
     coversine = 2 * np.where(lobe, np.exp(log), u)
     versine = np.where(lobe, -2 * np.expm1(log), 2 * (1 - u))
-    return Polar(versine, coversine, _density(n, coversine))
+    return Polar(versine, coversine, density(n, coversine))
