@@ -7,13 +7,14 @@ where the pilot has not been; if there is any, the histogram follows it too.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fogproof.checks.density.lattice import lattice
 from fogproof.checks.density.tree import Tree
 from fogproof.checks.statistics.labels import Sums
+from fogproof.checks.streams import batch_generator
 from fogproof.checks.subject import Subject, in_domain, nudged
 from fogproof.contracts import Draw
 from fogproof.domains import Law
@@ -21,6 +22,7 @@ from fogproof.domains import Law
 _PER_LEAF = 12  # pilot points in a leaf of the histogram
 _ANYWHERE = 0.1  # share of the domain's own law
 _LOOK = 1 << 18  # evenly spread points
+_CHECKED = 1 << 15  # pilot points at which the effect of rounding is looked at
 _UNSEEN = 0.9  # probability of being a sample, above which the pilot should have been there
 _FOLLOWED = 0.25  # share of the points that follow what the pilot has not seen
 _MOVED = 1e-2  # relative change of the pdf by rounding, from which on its value says nothing
@@ -32,6 +34,7 @@ class Mixture:
     """The known law of one subject.
 
     tree     in the coordinates of the domain's law
+    seed     of the check
     most     batches that are mixed: the first so many
     rounded  whether the pdf changes much by rounding somewhere: such points are left out
     """
@@ -39,24 +42,30 @@ class Mixture:
     subject: Subject
     law: Law
     tree: Tree
+    seed: int
     most: int
     rounded: bool
 
     @staticmethod
-    def of(subject: Subject, law: Law, points: np.ndarray, rng: np.random.Generator, most: int) -> Mixture:
+    def of(subject: Subject, law: Law, points: np.ndarray, seed: int, most: int) -> Mixture:
         """Return the mixture that follows pilot points (n, ...) of the domain."""
+        rng = batch_generator(seed, "labels", 0, 0)
         u = law.coordinates(points, rng.random((len(points), len(law.axes))))
-        rounded = len(points) > 0 and bool(_moved(subject, points[: 1 << 15]).any())
-        mixture = Mixture(subject, law, Tree.of(u, _PER_LEAF), most, rounded)
-        unseen = mixture._unseen(rng)
+        rounded = len(points) > 0 and bool(_moved(subject, points[:_CHECKED]).any())
+        return Mixture(subject, law, Tree.of(u, _PER_LEAF), seed, most, rounded)
+
+    def wider(self, points: np.ndarray) -> Mixture:
+        """Return the mixture that also follows the pdf where it is high and no pilot point was."""
+        rng = batch_generator(self.seed, "labels", 0, 1)
+        unseen = self._unseen(rng)
         if len(unseen) == 0:
-            return mixture
+            return self
+        u = self.law.coordinates(points, rng.random((len(points), len(self.law.axes))))
         n = max(len(u), 1 << 14)
         follow = unseen[rng.integers(0, len(unseen), int(_FOLLOWED * n))]
-        side = _LOOK ** (-1 / len(law.axes))
+        side = _LOOK ** (-1 / len(self.law.axes))
         follow = np.clip(follow + side * (rng.random(follow.shape) - 0.5), 0, 1)
-        u = rng.permutation(np.concatenate([u, follow]))
-        return Mixture(subject, law, Tree.of(u, _PER_LEAF), most, rounded)
+        return replace(self, tree=Tree.of(rng.permutation(np.concatenate([u, follow])), _PER_LEAF))
 
     def _unseen(self, rng: np.random.Generator) -> np.ndarray:
         """Return coordinates (m, k) where the pdf is high and no pilot point was, repeated by how much mass it has there."""
@@ -65,7 +74,7 @@ class Mixture:
         x = self.law.place(u)
         p = self.density(x)
         base = self.law.density(x)
-        q = base * (_ANYWHERE + (1 - _ANYWHERE) * self.tree.density(u, self.tree.leaf(u)))
+        q = self._q(x, u, self.tree.leaf(u))
         with np.errstate(all="ignore"):
             mass = np.where(np.isfinite(p) & (p > _UNSEEN / (1 - _UNSEEN) * q), p / base, 0.0)
         total = mass.sum()
@@ -82,17 +91,25 @@ class Mixture:
         p[inside] = self.subject.density(x[inside])
         return p
 
-    def count(self, draw: Draw, good: np.ndarray, p: np.ndarray, rng: np.random.Generator) -> tuple[Sums, Sums]:
-        """Return the sums over one batch: with all samples as labels, and with those only that the sampler has not given up.
+    def nothing(self) -> Sums:
+        """Return the sums over no points."""
+        none = np.empty(0)
+        return Sums.of(none, none, none.astype(np.intp), len(self.tree.share), np.zeros(3))
+
+    def count(self, draw: Draw, good: np.ndarray, p: np.ndarray, index: int) -> tuple[Sums, Sums]:
+        """Return the sums over batch number `index`: with all samples as labels, and with those alone that were not given up.
 
         good  (n,) which samples are good points of the continuous part
         p     the claimed density there
         """
+        rng = batch_generator(self.seed, "labels", 1, index)
         tried = np.ones(len(good), dtype=bool) if draw.valid is None else draw.valid
         every = self._sums(draw.x, good, p, rng, np.arange(len(good)))
         return every, (every if tried.all() else self._sums(draw.x, good, p, rng, np.flatnonzero(tried)))
 
-    def _sums(self, x: np.ndarray, good: np.ndarray, p: np.ndarray, rng: np.random.Generator, tried: np.ndarray) -> Sums:
+    def _sums(
+        self, x: np.ndarray, good: np.ndarray, p: np.ndarray, rng: np.random.Generator, tried: np.ndarray
+    ) -> Sums:
         n = len(tried)
         tosses = max(int(2 * n - _SIX * np.sqrt(2 * n)), 0)
         samples = min(int(rng.binomial(tosses, 0.5)), n)
@@ -107,7 +124,7 @@ class Mixture:
         if self.law.stepped:
             coordinates[len(used) :] = u
         leaf = self.tree.leaf(coordinates)
-        q = self.law.density(points) * (_ANYWHERE + (1 - _ANYWHERE) * self.tree.density(coordinates, leaf))
+        q = self._q(points, coordinates, leaf)
         labels = np.zeros(len(points))
         labels[: len(used)] = 1.0
         with np.errstate(all="ignore"):
@@ -122,6 +139,14 @@ class Mixture:
         if not telling.all():
             labels, w, leaf = labels[telling], w[telling], leaf[telling]
         return Sums.of(labels, w, leaf, len(self.tree.share), ratios)
+
+    def known(self, rng: np.random.Generator, n: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return n points of the known law and its density (n,) there."""
+        x, u = self._drawn(rng, n)
+        return x, self._q(x, u, self.tree.leaf(u))
+
+    def _q(self, x: np.ndarray, u: np.ndarray, leaf: np.ndarray) -> np.ndarray:
+        return self.law.density(x) * (_ANYWHERE + (1 - _ANYWHERE) * self.tree.density(u, leaf))
 
     def _drawn(self, rng: np.random.Generator, n: int) -> tuple[np.ndarray, np.ndarray]:
         """Return n points of the known law, in no special order, and their coordinates."""

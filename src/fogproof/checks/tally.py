@@ -15,7 +15,9 @@ import numpy as np
 
 from fogproof.checks.density.features import Ranges, kept
 from fogproof.checks.density.grid import Grid
+from fogproof.checks.mixture import Mixture
 from fogproof.checks.promises import Watch
+from fogproof.checks.statistics.labels import Sums
 from fogproof.checks.statistics.means import Moments
 from fogproof.checks.statistics.repeats import KEPT, fingerprints
 from fogproof.checks.statistics.serial import Successions
@@ -40,6 +42,8 @@ class Tally:
     prints   fingerprints of the points of the first batches
     weights  moments of the returned weights, channel by channel
     strange  points whose density the quadrature does not know
+    labels   sums of the label test: with all samples, and with those only that were not given up; None without the test
+    given_up samples that the sampler itself gave up on
     watch    what was seen of each promise
     """
 
@@ -54,6 +58,8 @@ class Tally:
     prints: np.ndarray
     weights: tuple[Moments, ...]
     strange: np.ndarray
+    labels: tuple[Sums, Sums] | None
+    given_up: int
     watch: Watch = field(repr=False)
 
     @property
@@ -88,6 +94,8 @@ class Tally:
             np.concatenate([self.prints, other.prints])[:KEPT],
             weights,
             kept(self.strange, other.strange),
+            _joined(self.labels, other.labels),
+            self.given_up + other.given_up,
             self.watch.merged(other.watch),
         )
 
@@ -108,6 +116,8 @@ class Tally:
             "prints": _packed(self.prints),
             "weights": [moments.to_dict() for moments in self.weights],
             "strange": _packed(self.strange),
+            "labels": None if self.labels is None else [[_packed(a) for a in each.columns] for each in self.labels],
+            "given_up": self.given_up,
             "broken": {name: list(what) for name, what in self.watch.broken.items()},
             "seen": self.watch.seen,
         }
@@ -129,6 +139,8 @@ class Tally:
             _unpacked(state["prints"]),
             tuple(Moments.from_dict(moments) for moments in state["weights"]),
             _unpacked(state["strange"]),
+            None if state["labels"] is None else _label_sums(state["labels"]),
+            state["given_up"],
             replace(watch, broken=broken, seen=dict(state["seen"])),
         )
 
@@ -142,6 +154,7 @@ class Counter:
     labels  the usual event label of each place
     scores  for each axis, the middle probability (m,) of each fine cell, in the units of serial correlation
     fingerprinted  whether repetitions mean anything
+    mixture  of the label test, None without it
     """
 
     subject: Subject
@@ -151,6 +164,7 @@ class Counter:
     labels: dict[Any, int]
     scores: tuple[np.ndarray, ...]
     fingerprinted: bool
+    mixture: Mixture | None = None
 
     def empty(self) -> Tally:
         """Return the tally of no samples."""
@@ -168,6 +182,8 @@ class Counter:
             np.empty(0, dtype=np.uint64),
             (),
             np.empty(0),
+            None,
+            0,
             Watch(self.subject, self.labels),
         )
 
@@ -185,8 +201,7 @@ class Counter:
             size = grid.plane.size
             rows = [r[c] for r, c in zip(grid.plane.rows, cells, strict=True)]
             plane = np.bincount(rows[0] * size + rows[1], minlength=size * size).reshape(size, size)
-            coarse = len(grid.plane.mass)
-            at = (rows[0] * coarse // size) * coarse + rows[1] * coarse // size
+            at = grid.plane.coarse(cells)
         strange = np.empty(0)
         if self.ranges is not None and len(points):
             strange = points[self.ranges.strange(cells[0] if at is None else at, p)]
@@ -194,16 +209,31 @@ class Counter:
         hits = {point: int(np.count_nonzero(where)) for point, where in subject.at_atom(draw.x).items()}
         labels = np.empty(0) if draw.event is None else draw.event
         events = {float(label): int(np.count_nonzero(labels == label)) for label in subject.events}
-        serial = Successions.of([s[c] for s, c in zip(self.scores, cells, strict=True)]) if len(points) else None
+        serial = Successions.of([s[c] for s, c in zip(self.scores, cells, strict=False)]) if len(points) else None
         remembered = self.fingerprinted and index * BATCH < KEPT
         prints = fingerprints(points) if remembered else np.empty(0, dtype=np.uint64)
         weights: tuple[Moments, ...] = ()
         if draw.weight is not None:
             columns = draw.weight.reshape(len(draw.x), -1).T
             weights = tuple(Moments.of(np.ascontiguousarray(column)) for column in columns)
+        mixed = self.mixture is not None and index < self.mixture.most
+        sums = self.mixture.count(draw, good, p, index) if self.mixture is not None and mixed else None
+        lost = 0 if draw.valid is None else int(np.count_nonzero(~draw.valid))
+        n, strange = len(draw.x), strange[:4096]
         return Tally(
-            (index,), len(draw.x), fine, plane, extremes, hits, events, serial, prints, weights, strange[:4096], watch
+            (index,), n, fine, plane, extremes, hits, events, serial, prints, weights, strange, sums, lost, watch
         )
+
+
+def _joined(first: tuple[Sums, Sums] | None, second: tuple[Sums, Sums] | None) -> tuple[Sums, Sums] | None:
+    if first is None or second is None:
+        return first or second
+    return first[0].merged(second[0]), first[1].merged(second[1])
+
+
+def _label_sums(state: list[Any]) -> tuple[Sums, Sums]:
+    every, valid = (Sums(*map(_unpacked, columns)) for columns in state)
+    return every, valid
 
 
 def _successions(state: list[Any]) -> Successions:

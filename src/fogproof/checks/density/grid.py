@@ -266,6 +266,20 @@ def _plane(chart: Chart, leaves: Leaves, marginals: tuple[Marginal, ...], sample
     return Plane((rows[0], rows[1]), (shares[0], shares[1]), (none, none), mass, error, independent)
 
 
+def pilot_grid(labels: tuple[str, ...], u: np.ndarray) -> Grid:
+    """Return cells that hold equal shares of pilot points u (n, k) along each axis: places in order, not known probabilities."""
+    marginals = []
+    for axis, label in enumerate(labels):
+        inner = np.unique(u[:, axis])[:: max(len(u) // _REGIONS, 1)]
+        edges = np.unique(np.concatenate([[0.0], inner[(inner > 0) & (inner < 1)], [1.0]]))
+        share = np.interp(edges, np.sort(u[:, axis]), np.arange(len(u)) / len(u)) if len(u) else edges
+        share[0], share[-1] = 0.0, 1.0
+        unknown, none = np.full(len(edges), np.inf), np.zeros(len(edges))
+        lookup = Lookup.of(edges)
+        marginals.append(Marginal(label, edges, edges, share, unknown, none, none, False, lookup, lambda c: c))
+    return Grid(tuple(marginals), None)
+
+
 def unit_square_grid(labels: tuple[str, str], samples: int) -> Grid:
     """Return the cells of the unit square, where a right sampler's points are uniform under their Rosenblatt map."""
     cells = cells_wanted(samples, 2)

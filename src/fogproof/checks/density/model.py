@@ -48,7 +48,9 @@ def integrated(chart: Chart, density: Density, pilot: np.ndarray, effort: Effort
 def second_view(chart: Chart, density: Density, pilot: np.ndarray, effort: Effort) -> Leaves:
     """Return other boxes with the same density, none of their first edges in common with those of `integrated`."""
     if len(chart.axes) == 1:
-        inner = np.quantile(pilot[:, 0], (np.arange(_PANELS // 2) + 0.5) / (_PANELS // 2)) if len(pilot) else np.empty(0)
+        inner = (
+            np.quantile(pilot[:, 0], (np.arange(_PANELS // 2) + 0.5) / (_PANELS // 2)) if len(pilot) else np.empty(0)
+        )
         breaks = np.unique(np.concatenate([inner, _shifted(chart.axes[0], _SPREAD)]))
         low, high = breaks[:-1, None], breaks[1:, None]
     else:
@@ -158,6 +160,18 @@ def looked_at_plane(density: Density, leaves: Leaves, points: np.ndarray, effort
         leaves = split(density, leaves, cut)
         leaves = refine(density, leaves, effort.tolerance, effort.budget, effort.noise)
     return leaves
+
+
+def unknown(density: Density, leaves: Leaves, points: np.ndarray, effort: Effort) -> np.ndarray:
+    """Return (n,) at which points (n, k) the density is not as the polynomials have it."""
+    value = density(points)
+    if points.shape[1] == 1:
+        curve = curve_of_line(leaves)
+        owner = np.clip(np.searchsorted(curve.breaks, points[:, 0], side="right") - 1, 0, len(curve.breaks) - 2)
+        return _missed(value, curve.density(points[:, 0]), np.diff(curve.breaks)[owner], effort)
+    owner = _owners(leaves, points)
+    volume = np.prod(leaves.high - leaves.low, axis=1)[owner]
+    return (owner < 0) | _missed(value, plane_density(leaves, owner, points), volume, effort)
 
 
 def _owners(leaves: Leaves, points: np.ndarray) -> np.ndarray:

@@ -54,6 +54,11 @@ class Sums:
             ratios,
         )
 
+    @property
+    def columns(self) -> tuple[np.ndarray, ...]:
+        """All sums."""
+        return self.cells, self.levels, self.ratios
+
     def merged(self, other: Sums) -> Sums:
         """Return the sums over both."""
         return Sums(self.cells + other.cells, self.levels + other.levels, self.ratios + other.ratios)
