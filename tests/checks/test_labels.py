@@ -240,8 +240,9 @@ def test_an_unseen_peak_of_half_the_mass_is_found():
     verdict = check_sampler(isotropic, lambda x: 0.5 / TURN + 0.5 * peak(x), UnitSphere(), dimensions=2, samples=N)
     assert verdict.outcome == "rejected", str(verdict)
     whole = next(f for f in verdict.findings if f.check == "labels")
-    integral = float(whole.message.split("integrates to ")[1].split(" ")[0])
-    assert integral == pytest.approx(1.5, abs=0.1), str(verdict)
+    integral, error = map(float, whole.message.split("integrates to ")[1].split(" +- "))
+    assert error < 0.2
+    assert abs(integral - 1.5) < 7 * error, str(verdict)
 
 
 def test_a_mirror_in_a_mixture_is_an_atom_on_the_sphere():
