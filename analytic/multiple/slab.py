@@ -12,15 +12,17 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS
+from fogproof.analytic.declaration import quantity
 from fogproof.analytic.multiple.isotropic_modes import isotropic_modes
 from fogproof.analytic.multiple.legendre_modes import legendre_modes
-from fogproof.analytic.multiple.legendre_moments import legendre_moments
 from fogproof.analytic.multiple.scattering_arguments import checked_albedo, checked_cosine, checked_length
 from fogproof.analytic.multiple.slab_modes import SOURCE
 from fogproof.analytic.multiple.slab_solution import Leaving, leaving_slab, nodes_inside
+from fogproof.analytic.phase.functions import phase_legendre_moments
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError, UnsupportedError
-from fogproof.scene.phase import Isotropic, PhaseFunction
+from fogproof.scene.arrays import FloatArray
+from fogproof.scene.phase import Isotropic, PhaseFunction, PhaseFunctionField
 from fogproof.validate import number
 
 METHOD = "discrete ordinates"
@@ -42,8 +44,18 @@ NEGLIGIBLE = 1e-8
 """Legendre moment below which the moments of a phase function are cut off, unless MOST_NODES come first."""
 
 
+@quantity(
+    unit="1",
+    convention="share of a beam of cosine mu0 to the normal, all directions and orders of scattering; tau is the optical thickness",
+    source="Chandrasekhar 1960, Radiative Transfer, chapter 8; Stamnes, Tsay, Wiscombe & Jayaweera 1988",
+    example={"albedo": [0.5, 0.9, 1], "tau": 1, "mu0": 0.5},
+)
 def slab_reflectance(
-    albedo: Any, tau: Any, mu0: Any, phase: PhaseFunction | None = None, refractive_index: float = 1.0
+    albedo: FloatArray,
+    tau: FloatArray,
+    mu0: FloatArray,
+    phase: PhaseFunctionField | None = None,
+    refractive_index: float = 1.0,
 ) -> Reference:
     """Return the share of a beam that a slab reflects, over all directions and orders of scattering.
 
@@ -60,8 +72,18 @@ def slab_reflectance(
     return _directional(albedo, tau, mu0, phase, refractive_index, lambda leaving: leaving.reflected)
 
 
+@quantity(
+    unit="1",
+    convention="share of a beam of cosine mu0 to the normal, scattered or not; tau is the optical thickness",
+    source="Chandrasekhar 1960, Radiative Transfer, chapter 8; Stamnes, Tsay, Wiscombe & Jayaweera 1988",
+    example={"albedo": [0.5, 0.9, 1], "tau": 1, "mu0": 0.5},
+)
 def slab_transmittance(
-    albedo: Any, tau: Any, mu0: Any, phase: PhaseFunction | None = None, refractive_index: float = 1.0
+    albedo: FloatArray,
+    tau: FloatArray,
+    mu0: FloatArray,
+    phase: PhaseFunctionField | None = None,
+    refractive_index: float = 1.0,
 ) -> Reference:
     """Return the share of a beam that passes a slab, scattered or not; arguments and error as in `slab_reflectance`.
 
@@ -70,8 +92,18 @@ def slab_transmittance(
     return _directional(albedo, tau, mu0, phase, refractive_index, lambda leaving: leaving.transmitted)
 
 
+@quantity(
+    unit="1",
+    convention="radiance at cosine mu0 where L_e = 1, cold surroundings; also the share absorbed of a beam",
+    source="Chandrasekhar 1960, Radiative Transfer, chapter 8; Stamnes, Tsay, Wiscombe & Jayaweera 1988",
+    example={"albedo": [0.5, 0.9, 1], "tau": 1, "mu0": 0.5},
+)
 def slab_emissivity(
-    albedo: Any, tau: Any, mu0: Any, phase: PhaseFunction | None = None, refractive_index: float = 1.0
+    albedo: FloatArray,
+    tau: FloatArray,
+    mu0: FloatArray,
+    phase: PhaseFunctionField | None = None,
+    refractive_index: float = 1.0,
 ) -> Reference:
     """Return the radiance at cosine mu0 of a slab that emits L_e = 1 in cold surroundings; also the share absorbed of a beam.
 
@@ -83,15 +115,27 @@ def slab_emissivity(
     )
 
 
+@quantity(
+    unit="1",
+    convention="share of diffuse light, the same from all directions of one side; tau is the optical thickness",
+    source="Chandrasekhar 1960, Radiative Transfer, chapter 8; Stamnes, Tsay, Wiscombe & Jayaweera 1988",
+    example={"albedo": [0.5, 0.9, 1], "tau": 1},
+)
 def slab_diffuse_reflectance(
-    albedo: Any, tau: Any, phase: PhaseFunction | None = None, refractive_index: float = 1.0
+    albedo: FloatArray, tau: FloatArray, phase: PhaseFunctionField | None = None, refractive_index: float = 1.0
 ) -> Reference:
     """Return the share of diffuse light that a slab reflects; arguments and error as in `slab_reflectance`."""
     return _diffuse(albedo, tau, phase, refractive_index, lambda leaving: leaving.diffuse_reflected)
 
 
+@quantity(
+    unit="1",
+    convention="share of diffuse light, the same from all directions of one side; tau is the optical thickness",
+    source="Chandrasekhar 1960, Radiative Transfer, chapter 8; Stamnes, Tsay, Wiscombe & Jayaweera 1988",
+    example={"albedo": [0.5, 0.9, 1], "tau": 1},
+)
 def slab_diffuse_transmittance(
-    albedo: Any, tau: Any, phase: PhaseFunction | None = None, refractive_index: float = 1.0
+    albedo: FloatArray, tau: FloatArray, phase: PhaseFunctionField | None = None, refractive_index: float = 1.0
 ) -> Reference:
     """Return the share of diffuse light that passes a slab; arguments and error as in `slab_reflectance`."""
     return _diffuse(albedo, tau, phase, refractive_index, lambda leaving: leaving.diffuse_transmitted)
@@ -140,13 +184,20 @@ def _compare(c: float, tau: float, mu0: np.ndarray, settings: _Settings, pick: A
     if isinstance(phase, Isotropic):
         fine, coarse = (pick(_solve(c, tau, mu0, None, index, n)) for n in (FINE, COARSE))
         return fine, np.abs(fine - coarse) + ROUNDING
-    chi = legendre_moments(phase, 2 * MOST_NODES)
+    moments = phase_legendre_moments(phase, 2 * MOST_NODES)
+    chi = moments.value
     n = int(np.clip(1 + np.flatnonzero(np.abs(chi) > NEGLIGIBLE)[-1] // 2, FINE, MOST_NODES))
     m = (3 * n) // 4
-    fine, coarse = (pick(_solve(c, tau, mu0, chi[: 2 * size], index, size)) for size in (n, m))
-    # Cutting the moments off at l costs about chi_l, ten times which is taken to bound the share of the error left.
-    left = 10 * abs(chi[2 * n] / chi[2 * m]) if chi[2 * m] != 0 else 1.0
-    return fine, np.abs(fine - coarse) * np.clip(left, 0.1, 1) + LEGENDRE_ROUNDING
+    finer, coarser = (_solve(c, tau, mu0, chi[: 2 * size], index, size) for size in (n, m))
+    fine, coarse = pick(finer), pick(coarser)
+    # Cutting the moments off at l costs about those beyond, ten times which is taken to bound the share of the error left.
+    first, second = np.max(np.abs(chi[2 * n :])), np.max(np.abs(chi[2 * m : 2 * n]))
+    left = 10 * first / second if second > 0 else 1.0
+    # A phase function off by delta f changes each collision by its integral, at most the root of the sum (Parseval).
+    change = np.sqrt((2 * np.arange(2 * n) + 1) @ moments.error[: 2 * n] ** 2)
+    kept = min(np.min(finer.reflected + finer.transmitted), finer.diffuse_reflected + finer.diffuse_transmitted)
+    collisions = min(c * max(1 - kept, 0.0) / (1 - c) if c < 1 else np.inf, 2 * (1 + tau) ** 2)
+    return fine, np.abs(fine - coarse) * np.clip(left, 0.1, 1) + LEGENDRE_ROUNDING + change * collisions
 
 
 def _solve(c: float, tau: float, mu0: np.ndarray, chi: np.ndarray | None, index: float, n: int) -> Leaving:

@@ -13,12 +13,12 @@ Channels = float | tuple[float, ...]
 
 
 def as_float_array(name: str, value: Any) -> np.ndarray:
-    """Return `value` as a float64 array, or say what cannot be read as numbers."""
+    """Return `value` as a new float64 array without negative zeros, or say what cannot be read as numbers."""
     try:
         array = np.asarray(value)
         if array.dtype.kind not in "iuf":
             raise TypeError(array.dtype)
-        return array.astype(np.float64)
+        return np.asarray(array.astype(np.float64) + 0.0)  # -0.0 + 0.0 = 0.0: its sign must not choose a branch
     except (TypeError, ValueError, OverflowError):
         raise InvalidValueError(name, "must be a number or an array of numbers", value) from None
 
@@ -107,3 +107,24 @@ def channel_count(**values: Channels) -> int | None:
             "give one number for grey, or equally many everywhere",
         )
     return next(iter(counts.values()), None)
+
+
+def one_point(name: str, value: object) -> tuple[float, float, float]:
+    """Return one finite point as a tuple."""
+    point = points(name, value)
+    if point.ndim != 1:
+        raise InvalidValueError(name, "must be one point [x, y, z]", value)
+    return tuple(point.tolist())
+
+
+def one_direction(name: str, value: object) -> tuple[float, float, float]:
+    """Return one unit vector as a tuple."""
+    vector = unit_vectors(name, value)
+    if vector.ndim != 1:
+        raise InvalidValueError(name, "must be one vector [x, y, z]", value)
+    return tuple(vector.tolist())
+
+
+def positive_length(name: str, value: Any) -> float:
+    """Return a finite length > 0 [m]."""
+    return number(name, value, "must be finite and > 0 [m]", 0, np.inf, open_ends=True)

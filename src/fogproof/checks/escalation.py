@@ -35,6 +35,7 @@ WEIGHTS = {
     "largest cell": 0.5,
     "serial correlation": 0.25,
     "repeated points": 0.25,
+    "few values": 0.25,
 }
 """Relative shares of alpha. Errors that some tests exist for have p-values far below any share: these tests get little."""
 

@@ -17,6 +17,7 @@ from fogproof.checks.density.grid import Grid, line_grid_from_cdf, pilot_grid, r
 from fogproof.checks.density.model import looked_at, looked_at_plane
 from fogproof.checks.edges import edge_uniforms, no_edge_uniforms
 from fogproof.checks.given_cdf import agreement, continuous_cdf, rosenblatt
+from fogproof.checks.jacobian import jacobian_agreement
 from fogproof.checks.mixture import Mixture
 from fogproof.checks.normalisation import FLOOR, albedo, mean_cosine, normalisation
 from fogproof.checks.probes import precision_agreement, reference_agreement
@@ -126,7 +127,13 @@ class Prepared:
             pole = float(low + (1 - high))
         p = self.subject.density(points)
         return expected_repeats(
-            min(n, KEPT), self.subject.domain, self.subject.precision, points, np.where(np.isfinite(p), p, 0.0), pole
+            min(n, KEPT),
+            self.subject.domain,
+            self.subject.precision,
+            points,
+            np.where(np.isfinite(p), p, 0.0),
+            pole,
+            self.subject.uniform_bits,
         )
 
     def refined(self, tally: Tally) -> Prepared:
@@ -181,6 +188,8 @@ def prepare(subject: Subject, samples: int, seed: int) -> Prepared:
         ranges = None
         if len(claim.chart.axes) == 1:
             findings.append(agreement(subject, claim, grid.marginals[0]))
+        else:
+            findings.append(jacobian_agreement(subject, pilot.points))
     if len(claim.chart.axes) > 1 and (subject.cdf is not None or not _independent(grid)):
         law = subject.domain.law(pilot.points)
         mixture = Mixture.of(subject, law, pilot.points, seed, 1)
@@ -218,6 +227,8 @@ def _by_labels(
         findings += sampled_integrals.albedo(mixture)
     if subject.cdf is not None and claim is not None:
         grid, count = _by_cdf(subject, claim, samples)
+        if len(claim.chart.axes) > 1:
+            findings.append(jacobian_agreement(subject, pilot.points))
         counter = _counter(subject, grid, count, None, pilot, mixture)
         return Prepared(subject, samples, pilot, claim, counter, tuple(findings), True)
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from fogproof.checks.density.grid import Grid
 from fogproof.checks.escalation import Test
+from fogproof.checks.few_values import few_values, few_values_axes
 from fogproof.checks.mixture import Mixture
 from fogproof.checks.normalisation import FLOOR
 from fogproof.checks.prepared import Prepared
@@ -41,8 +42,12 @@ def tests_of(prepared: Prepared, tally: Tally) -> list[Test]:
         _add_cells(add, grid, tally)
     if prepared.counter.mixture is not None and not vacuum:
         _add_labels(add, prepared.counter.mixture, tally)
-    add("serial correlation", serial_test, "serial correlation", tally.serial)
+    if not subject.quasi_random:
+        add("serial correlation", serial_test, "serial correlation", tally.serial)
     if prepared.counter.fingerprinted:
+        for coordinate in few_values_axes(subject):
+            drawn = prepared.pilot.points, tally.points
+            add("few values", few_values, f"different values of {coordinate}", subject, coordinate, *drawn)
         add("repeated points", repeats_test, "repeated points", tally.prints, prepared.expected_repeats)
     n = max(tally.drawn, 1)
     wrong_atom = "wrong probability of an atom"

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import base64
 import zlib
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 import numpy as np
@@ -40,6 +40,7 @@ class Tally:
     events   how often each declared event label came up
     serial   products of successive scores
     prints   fingerprints of the points of the first batches
+    points   the points of the first batch
     weights  moments of the returned weights, channel by channel
     strange  points whose density the quadrature does not know
     labels   sums of the label test: with all samples, and with those only that were not given up; None without the test
@@ -56,6 +57,7 @@ class Tally:
     events: dict[float, int]
     serial: Successions | None
     prints: np.ndarray
+    points: np.ndarray
     weights: tuple[Moments, ...]
     strange: np.ndarray
     labels: tuple[Sums, Sums] | None
@@ -92,6 +94,7 @@ class Tally:
             {label: hits + other.events[label] for label, hits in self.events.items()},
             serial,
             np.concatenate([self.prints, other.prints])[:KEPT],
+            self.points if len(self.points) else other.points,
             weights,
             kept(self.strange, other.strange),
             _joined(self.labels, other.labels),
@@ -110,10 +113,9 @@ class Tally:
             "extremes": _packed(self.extremes),
             "atoms": [[_written(point), hits] for point, hits in self.atoms.items()],
             "events": [[label, hits] for label, hits in self.events.items()],
-            "serial": None
-            if serial is None
-            else [[_packed(part) for part in (serial.sums, serial.products, serial.squares)], serial.n, serial.pairs],
+            "serial": None if serial is None else [_packed(getattr(serial, f.name)) for f in fields(serial)],
             "prints": _packed(self.prints),
+            "points": _packed(self.points),
             "weights": [moments.to_dict() for moments in self.weights],
             "strange": _packed(self.strange),
             "labels": None if self.labels is None else [[_packed(a) for a in each.columns] for each in self.labels],
@@ -135,8 +137,9 @@ class Tally:
             _unpacked(state["extremes"]),
             {_read(point): hits for point, hits in state["atoms"]},
             dict(state["events"]),
-            None if serial is None else _successions(serial),
+            None if serial is None else Successions(*map(_unpacked, serial)),
             _unpacked(state["prints"]),
+            _unpacked(state["points"]),
             tuple(Moments.from_dict(moments) for moments in state["weights"]),
             _unpacked(state["strange"]),
             None if state["labels"] is None else _label_sums(state["labels"]),
@@ -180,6 +183,7 @@ class Counter:
             dict.fromkeys(map(float, self.subject.events), 0),
             None,
             np.empty(0, dtype=np.uint64),
+            np.empty((0, *self.subject.domain.shape)),
             (),
             np.empty(0),
             None,
@@ -209,9 +213,13 @@ class Counter:
         hits = {point: int(np.count_nonzero(where)) for point, where in subject.at_atom(draw.x).items()}
         labels = np.empty(0) if draw.event is None else draw.event
         events = {float(label): int(np.count_nonzero(labels == label)) for label in subject.events}
-        serial = Successions.of([s[c] for s, c in zip(self.scores, cells, strict=False)]) if len(points) else None
-        remembered = self.fingerprinted and index * BATCH < KEPT
+        first = index * BATCH < KEPT
+        serial = (
+            Successions.of([s[c] for s, c in zip(self.scores, cells, strict=False)], first) if len(points) else None
+        )
+        remembered = self.fingerprinted and first
         prints = fingerprints(points) if remembered else np.empty(0, dtype=np.uint64)
+        kept_points = points if index == 0 else np.empty((0, *subject.domain.shape))
         weights: tuple[Moments, ...] = ()
         if draw.weight is not None:
             columns = draw.weight.reshape(len(draw.x), -1).T
@@ -221,7 +229,21 @@ class Counter:
         lost = 0 if draw.valid is None else int(np.count_nonzero(~draw.valid))
         n, strange = len(draw.x), strange[:4096]
         return Tally(
-            (index,), n, fine, plane, extremes, hits, events, serial, prints, weights, strange, sums, lost, watch
+            (index,),
+            n,
+            fine,
+            plane,
+            extremes,
+            hits,
+            events,
+            serial,
+            prints,
+            kept_points,
+            weights,
+            strange,
+            sums,
+            lost,
+            watch,
         )
 
 
@@ -234,11 +256,6 @@ def _joined(first: tuple[Sums, Sums] | None, second: tuple[Sums, Sums] | None) -
 def _label_sums(state: list[Any]) -> tuple[Sums, Sums]:
     every, valid = (Sums(*map(_unpacked, columns)) for columns in state)
     return every, valid
-
-
-def _successions(state: list[Any]) -> Successions:
-    sums, products, squares = (_unpacked(part) for part in state[0])
-    return Successions(sums, products, squares, state[1], state[2])
 
 
 def _written(point: Any) -> Any:

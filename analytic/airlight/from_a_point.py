@@ -1,4 +1,4 @@
-"""Airlight of a point or spot light in a homogeneous medium: the airlight integral over the lit pieces of each ray.
+"""Airlight of a light at a point in a homogeneous medium: the airlight integral over the lit pieces of each ray.
 
     L = sigma_s I / (4 pi) int exp(-sigma_t (s + r)) 4 pi f_p(mu) / r^2 dt        [W/(m^2 sr)]
 
@@ -13,39 +13,48 @@ from collections.abc import Sequence
 import numpy as np
 
 from fogproof.analytic.airlight import asinh as airlight_asinh
+from fogproof.analytic.airlight.beam import Beam
 from fogproof.analytic.airlight.integral import Method, integrate, refuse_beyond
-from fogproof.analytic.airlight.light_cone import edges, falloff, lit_by_cone
 from fogproof.analytic.airlight.phase import airlight_phase
-from fogproof.analytic.airlight.ray_and_light import Placement, moved, place
+from fogproof.analytic.airlight.ray_and_light import Placement, moved
+from fogproof.analytic.airlight.result import Result
 from fogproof.analytic.airlight.segments import Segments, cut
 from fogproof.analytic.arithmetic.error_free import EPS, TINY, two_sum
 from fogproof.analytic.arithmetic.vectors import norm
-from fogproof.analytic.geometry.convex_shapes import Chord, chord
+from fogproof.analytic.geometry.convex_shapes import Chord, chord, contains
 from fogproof.analytic.geometry.flat_rays import FlatRays
 from fogproof.analytic.geometry.shadows import Shadow, shadow_of_point
 from fogproof.errors import UnsupportedError
-from fogproof.scene import Isotropic, Medium
-from fogproof.scene.lights import PointLight, SpotLight
+from fogproof.scene import AnyMedium, Isotropic, Medium
 from fogproof.scene.occluders import Occluder
 from fogproof.scene.shapes import Shape
+from fogproof.validate import Channels
 
-Result = tuple[np.ndarray, np.ndarray, str, str]
 
-
-def point_light(
-    medium: Medium,
+def from_a_point(
+    medium: AnyMedium,
     ray: FlatRays,
-    light: PointLight | SpotLight,
+    position: tuple[float, float, float],
+    intensity: Channels,
+    beam: Beam,
     shape: Shape,
     occluders: Sequence[Occluder],
     method: Method,
-) -> Result:
-    """Return the radiance (n, channels) along the flattened rays, its error, method and source."""
+) -> Result | None:
+    """Return the radiance (n, channels) along the flattened rays, its error, method and source.
+
+    None if the medium is not homogeneous, the light is outside of it, or its intensity varies in another way than `Gain` knows.
+    """
+    where = beam.where
+    if not isinstance(medium, Medium) or where is None or not contains(shape, np.array(position)):
+        return None
+    if beam.profile is not None and beam.gain is None:
+        return None
     sigma, sigma_low = (np.atleast_1d(x) for x in two_sum(medium.sigma_a, medium.sigma_s))
     with np.errstate(all="ignore"):
-        where = place(ray, light.position)
         inside = chord(shape, ray)
-        segments, owner, weight = _lit(where, inside, light, _shadows(occluders, ray, light))
+        shadows = [shadow_of_point(occluder, ray, position) for occluder in occluders]
+        segments, owner, weight = _lit(where, inside, beam, shadows)
         pieces = _with_channels(segments, sigma, sigma_low)
         share = np.repeat(weight, len(sigma))
 
@@ -59,8 +68,8 @@ def point_light(
 
         phase = airlight_phase(medium.phase)
         gain, gain_error = (None, np.zeros(len(where.h)))
-        if isinstance(light, SpotLight):
-            gain, gain_error = falloff(where, light, np.repeat(owner, len(sigma)))
+        if beam.gain is not None:
+            gain, gain_error = beam.gain(np.repeat(owner, len(sigma)))
         if gain is None:
             value, error, name, source = integrate(pieces, medium.phase, method)
         elif method == "asinh":
@@ -79,19 +88,13 @@ def point_light(
         if absolute.any():
             plain = gather(airlight_asinh.integrate(pieces, airlight_phase(Isotropic()))[0])
             error = error + np.where(plain > 0, plain * absolute, 0.0)
-        scale = np.multiply(medium.sigma_s, light.intensity) / (4 * np.pi)
+        scale = np.multiply(medium.sigma_s, intensity) / (4 * np.pi)
         value = np.where(scale > 0, integral * scale, 0.0)
         error = np.where((scale > 0) & (value < np.inf), error * scale + 3 * EPS * value + TINY, 0.0)
     return value, error, name, source
 
 
-def _shadows(occluders: Sequence[Occluder], ray: FlatRays, light: PointLight | SpotLight) -> list[Shadow]:
-    return [shadow_of_point(occluder, ray, light.position) for occluder in occluders]
-
-
-def _lit(
-    where: Placement, inside: Chord, light: PointLight | SpotLight, shadows: list[Shadow]
-) -> tuple[Segments, np.ndarray, np.ndarray]:
+def _lit(where: Placement, inside: Chord, beam: Beam, shadows: list[Shadow]) -> tuple[Segments, np.ndarray, np.ndarray]:
     """Return the lit pieces, the rays they belong to, and 1, or 1/2 for those that may be dark or outside.
 
     The attenuation starts where the ray enters the medium.
@@ -106,21 +109,20 @@ def _lit(
     length = inside.end - inside.start
     whole = Segments(none, none, where.h, where.h_low, start, camera_low, start, end, length, near, near_low)
     unsure = (inside.sure_start > inside.start) | (inside.sure_end < inside.end)
-    spot = isinstance(light, SpotLight)
-    if not (shadows or spot or unsure.any()):
+    if not (shadows or beam.weight or unsure.any()):
         return whole, np.arange(len(where.h)), np.ones(len(where.h))
 
     places = [where.a[:, None] + np.stack(shadow, axis=1) for shadow in shadows]
     places.append(where.a[:, None] + np.stack([inside.sure_start, inside.sure_end], axis=1))
-    if isinstance(light, SpotLight):
-        places += [edges(where, light), np.where(where.h == 0, 0.0, np.nan)[:, None]]
+    if beam.edges is not None:
+        places += [beam.edges, np.where(where.h == 0, 0.0, np.nan)[:, None]]
     pieces, owner = cut(whole, np.concatenate(places, axis=1))
     middle = _middle(pieces)
     distance = middle - where.a[owner]
     sure = (distance > inside.sure_start[owner]) & (distance < inside.sure_end[owner]) | ~unsure[owner]
     weight = np.where(sure, 1.0, 0.5)
-    if isinstance(light, SpotLight):
-        weight = np.minimum(weight, lit_by_cone(where, light, owner, middle))
+    if beam.weight is not None:
+        weight = np.minimum(weight, beam.weight(owner, middle))
     for shadow in shadows:
         outer, dark, undark, over = (x[owner] for x in shadow)
         weight = np.where((distance > outer) & (distance < over), np.minimum(weight, 0.5), weight)

@@ -8,13 +8,51 @@ equation. Edges are taken with a margin: what lies between C - margin and C + ma
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 
 from fogproof.analytic.airlight.asinh import Gain
-from fogproof.analytic.airlight.ray_and_light import Placement, foot
+from fogproof.analytic.airlight.beam import Beam
+from fogproof.analytic.airlight.from_a_point import from_a_point
+from fogproof.analytic.airlight.integral import Method
+from fogproof.analytic.airlight.ray_and_light import Placement, foot, place
+from fogproof.analytic.airlight.result import Result
 from fogproof.analytic.arithmetic.error_free import EPS
+from fogproof.analytic.geometry.flat_rays import FlatRays
+from fogproof.scene import AnyMedium
 from fogproof.scene.lights import SpotLight
+from fogproof.scene.occluders import Occluder
+from fogproof.scene.shapes import Shape
+
+
+def beam(light: SpotLight, ray: FlatRays, exact: bool) -> Beam:
+    """Return the light for quadrature along rays."""
+    where = place(ray, light.position, exact)
+    outer, inner = _cosines(light)
+    if inner == outer and light.exponent == 0:
+        return Beam(where, edges=edges(where, light), weight=partial(lit_by_cone, where, light))
+    return Beam(
+        where,
+        edges=edges(where, light),
+        weight=partial(lit_by_cone, where, light),
+        profile=partial(intensity_at, where, light),
+        gain=partial(falloff, where, light),
+    )
+
+
+def single_scattering(
+    medium: AnyMedium,
+    ray: FlatRays,
+    light: SpotLight,
+    shape: Shape,
+    occluders: Sequence[Occluder],
+    method: Method,
+    exact: bool,
+) -> Result | None:
+    """Return the airlight integral over the lit pieces of the rays, with a bound of its error."""
+    return from_a_point(medium, ray, light.position, light.intensity, beam(light, ray, exact), shape, occluders, method)
 
 
 def axis_products(where: Placement, light: SpotLight) -> tuple[np.ndarray, np.ndarray]:
@@ -66,14 +104,9 @@ def lit_by_cone(where: Placement, light: SpotLight, ray: np.ndarray, t: np.ndarr
     return np.where(cosine > outer + delta, 1.0, np.where(cosine < outer - delta, 0.0, 0.5))
 
 
-def falloff(where: Placement, light: SpotLight, ray: np.ndarray) -> tuple[Gain | None, np.ndarray]:
-    """Return the intensity relative to the axis along segments of the given rays, and its error, (n,), one a ray.
-
-    None stands for an intensity that is the same in all the cone.
-    """
+def falloff(where: Placement, light: SpotLight, ray: np.ndarray) -> tuple[Gain, np.ndarray]:
+    """Return the intensity relative to the axis along segments of the given rays, and its error, (n,), one a ray."""
     outer, inner = _cosines(light)
-    if inner == outer and light.exponent == 0:
-        return None, np.zeros(len(where.h))
     A, B = axis_products(where, light)
 
     def factor(w: np.ndarray, wt: np.ndarray, scale: np.ndarray, segment: np.ndarray) -> np.ndarray:

@@ -15,20 +15,23 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import cache, partial
+from typing import Any
 
 import numpy as np
 
+from fogproof.analytic.airlight.incident import Incident
 from fogproof.analytic.airlight.phase import airlight_phase
+from fogproof.analytic.airlight.result import Result
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
-from fogproof.analytic.geometry.convex_shapes import chord, faces
+from fogproof.analytic.geometry.convex_shapes import chord
 from fogproof.analytic.geometry.flat_rays import FlatRays
 from fogproof.analytic.phase.functions import phase_pdf
-from fogproof.errors import UnsupportedError
 from fogproof.scene import AnyMedium, Medium
+from fogproof.scene.kinds import given
 from fogproof.scene.lights import Environment
 from fogproof.scene.occluders import Occluder
 from fogproof.scene.phase import Isotropic, PhaseFunction
-from fogproof.scene.shapes import Ball, HalfSpace, Shape, Slab, Unbounded
+from fogproof.scene.shapes import Shape
 
 METHOD = "double exponential rules over directions and along the ray"
 SOURCE = "Beer's law along both ways, integrated; Takahasi & Mori 1974"
@@ -37,38 +40,31 @@ REACH = 20.0
 """Largest |s|: 1 - |tanh s| < 1e-17 beyond."""
 
 Rule = tuple[np.ndarray, np.ndarray]
+Answer = tuple[np.ndarray, np.ndarray]
+"""Integral and what the error of f_p is of it, (channels,) each."""
 
 
-def environment_light(
-    medium: AnyMedium, ray: FlatRays, light: Environment, shape: Shape, occluders: Sequence[Occluder]
-) -> tuple[np.ndarray, np.ndarray, str, str]:
-    """Return the radiance (n, channels) along the flattened rays, its estimated error, method and source."""
-    if not isinstance(medium, Medium) or occluders:
-        raise UnsupportedError(
-            "single scattering of an environment needs a homogeneous Medium and no occluders", "light"
-        )
+def single_scattering(
+    medium: AnyMedium, ray: FlatRays, light: Environment, shape: Shape, occluders: Sequence[Occluder], **_how: Any
+) -> Result | None:
+    """Return the radiance (n, channels) along the flattened rays and its estimated error; None for other media and shapes."""
+    along = given(shape, "fogproof.analytic.shapes", "environment")
+    if along is None or occluders or not isinstance(medium, Medium):
+        return None
     sigma = np.atleast_1d(medium.sigma_t)
     value, error = np.zeros((2, ray.length.size, len(sigma)))
-    if isinstance(shape, Unbounded):
-        return value, error, "no light arrives from infinitely far", SOURCE
-    if not isinstance(shape, HalfSpace | Slab | Ball):
-        raise UnsupportedError(f"an environment around a {type(shape).__name__}; use HalfSpace, Slab or Ball", "shape")
     inside = chord(shape, ray)
     origin, d = ray.origin, ray.direction
     with np.errstate(all="ignore"):
         for i in range(len(value)):
             start, end = inside.start[i], inside.end[i]
             if end > start:
-                given = medium.phase, origin[i], d[i], sigma, start, end
-                rule = (
-                    partial(_in_ball, shape, *given)
-                    if isinstance(shape, Ball)
-                    else partial(_between_planes, shape, *given)
-                )
+                rule = partial(along, shape, medium.phase, origin[i], d[i], sigma, start, end)
                 coarse, (value[i], noise) = rule(1)[0], rule(2)
                 error[i] = np.abs(value[i] - coarse) + noise + 256 * EPS * value[i]
-                unsure = (inside.sure_start[i] - start) + (end - inside.sure_end[i] if end < np.inf else 0.0)
-                error[i] += unsure
+                error[i] += inside.sure_start[i] - start
+                if end < np.inf:
+                    error[i] += (end - inside.sure_end[i]) * np.exp(-sigma * (inside.sure_end[i] - start))
         scale = np.atleast_1d(np.multiply(medium.sigma_s, light.radiance))
         error = np.where(scale > 0, scale * error + TINY, 0.0)
         value = np.where(scale > 0, scale * value, 0.0)
@@ -86,14 +82,14 @@ def _double_exponential(panels: int) -> Rule:
     return np.where(q < 0, near, -near), weights / weights.sum()
 
 
-def _on(low: np.ndarray, high: np.ndarray, fine: int, panels: int = 20) -> tuple[np.ndarray, np.ndarray]:
+def on_interval(low: np.ndarray, high: np.ndarray, fine: int, panels: int = 20) -> tuple[np.ndarray, np.ndarray]:
     """Return nodes and weights of the double exponential rule on each interval, (..., nodes)."""
     x, weights = _double_exponential(panels * fine)
     low, high = low[..., None], high[..., None]
     return np.where(x > 0, low + (high - low) * x, high + (high - low) * x), weights * (high - low)
 
 
-def _over_directions(
+def over_directions(
     phase: PhaseFunction, mu0: float, G: Callable[[np.ndarray], np.ndarray], fine: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return int f_p(b . d) G(b . n) db over directions b back to the light, per channel, and what f_p's error is of it.
@@ -102,27 +98,28 @@ def _over_directions(
          singularity at the horizon b . n = 0
     """
     if isinstance(phase, Isotropic):
-        cosine, weights = (x.ravel() for x in _on(np.array([-1.0, 0.0]), np.array([0.0, 1.0]), fine))
+        cosine, weights = (x.ravel() for x in on_interval(np.array([-1.0, 0.0]), np.array([0.0, 1.0]), fine))
         total = 0.5 * weights @ G(cosine)
         return total, EPS * total
     sine0 = np.sqrt((1 - mu0) * (1 + mu0))
     tangent = np.arctanh(min(sine0, 1 - EPS))  # beyond that |s| all azimuths are on one side of the horizon
     kinks = np.arctanh(np.clip(airlight_phase(phase).kinks, -1 + EPS, 1 - EPS))
     breaks = np.unique(np.clip([-REACH, *range(-6, 7, 3), -tangent, tangent, REACH, *kinks], -REACH, REACH))
-    s, s_weights = (x.ravel() for x in _on(breaks[:-1], breaks[1:], fine))
+    s, s_weights = (x.ravel() for x in on_interval(breaks[:-1], breaks[1:], fine))
     f = phase_pdf(phase, np.tanh(s))
     s_weights = s_weights / np.cosh(s) ** 2
     C, D = np.tanh(s) * mu0, sine0 / np.cosh(s)
     horizon = np.arccos(np.clip(-C / D, -1, 1)) if sine0 > 0 else np.where(C > 0, np.pi, 0.0)
     total = 0.0
     for low, high in ((np.zeros_like(horizon), horizon), (horizon, np.full_like(horizon, np.pi))):
-        phi, weights = _on(low, high, fine)
+        phi, weights = on_interval(low, high, fine)
         total = total + 2 * np.einsum("sp,spc->sc", weights, G(C[:, None] + D[:, None] * np.cos(phi)))
     return (s_weights * f.value) @ total, (s_weights * f.error) @ total
 
 
-def _between_planes(
-    shape: HalfSpace | Slab,
+def between_planes(
+    normals: np.ndarray,
+    offsets: np.ndarray,
     phase: PhaseFunction,
     origin: np.ndarray,
     d: np.ndarray,
@@ -130,14 +127,16 @@ def _between_planes(
     start: float,
     end: float,
     fine: int,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the integral over directions of the integral along the ray, per channel, and what f_p's error is of it."""
-    normals, offsets = faces(shape)
+) -> Answer:
+    """Return the integral over directions of the integral along the ray, per channel, and what f_p's error is of it.
+
+    normals, offsets  of one plane, or of two that are parallel
+    """
 
     def along(cosine: np.ndarray) -> np.ndarray:
         return _along(normals, offsets, origin, d, sigma, start, end, cosine)
 
-    return _over_directions(phase, float(np.clip(normals[0] @ d, -1, 1)), along, fine)
+    return over_directions(phase, float(np.clip(normals[0] @ d, -1, 1)), along, fine)
 
 
 def _along(
@@ -169,34 +168,16 @@ def _along(
     return result
 
 
-def _in_ball(
-    shape: Ball,
-    phase: PhaseFunction,
-    origin: np.ndarray,
-    d: np.ndarray,
-    sigma: np.ndarray,
-    start: float,
-    end: float,
-    fine: int,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the integral along the ray of the integral over directions, per channel, and what f_p's error is of it."""
-    value, spread = np.zeros((2, len(sigma)))
-    t, weights = _on(np.array(start), np.array(end), fine)
-    for one, weight in zip(t, weights, strict=True):
-        q = origin - np.array(shape.center) + one * d
-        distance = float(np.linalg.norm(q))
-        mu0 = float(np.clip(q @ d / distance, -1, 1)) if distance > 0 else 1.0
-        room = max((shape.radius - distance) * (shape.radius + distance), 0.0)
-
-        def survival(cosine: np.ndarray, distance: float = distance, room: float = room) -> np.ndarray:
-            """exp(-sigma d), d = sqrt(c^2 + R^2 - r^2) - c with c = r cos, without cancellation."""
-            c = distance * cosine
-            root = np.sqrt(c * c + room)
-            way = np.where(c > 0, room / (root + c), root - c)
-            return np.exp(-sigma * way[..., None])
-
-        received, noise = _over_directions(phase, mu0, survival, fine)
-        lit = weight * np.exp(-sigma * (one - start))
-        value += lit * received
-        spread += lit * noise
-    return value, spread
+def incident(_light: Environment, x: np.ndarray, nodes: int) -> Incident:
+    """Return a rule over all directions: Gauss-Legendre in the cosine to z and in the azimuth, octant by octant."""
+    y, weights = np.polynomial.legendre.leggauss(nodes)
+    y, weights = 0.5 * (y + 1), 0.5 * weights
+    cosine, cosine_weight = np.concatenate([-y, y]), np.concatenate([weights, weights])
+    angle = (np.arange(4)[:, None] + y).ravel() * (np.pi / 2)
+    angle_weight = np.tile(weights, 4) * (np.pi / 2)
+    sine = np.sqrt((1 - cosine) * (1 + cosine))
+    z = np.broadcast_to(cosine[:, None], (len(cosine), len(angle)))
+    w = np.stack([np.outer(sine, np.cos(angle)), np.outer(sine, np.sin(angle)), z], axis=-1).reshape(1, -1, 3)
+    weight = np.outer(cosine_weight, angle_weight).reshape(1, -1)
+    shape = (len(x), weight.shape[1])
+    return Incident(np.broadcast_to(w, (*shape, 3)), np.full(shape, np.inf), np.broadcast_to(weight, shape))

@@ -1,4 +1,4 @@
-"""Opaque surfaces in or behind a medium, which reflect and may glow."""
+"""A surface: a place, and how it reflects and glows."""
 
 from __future__ import annotations
 
@@ -6,28 +6,15 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 from fogproof.errors import InvalidValueError
-from fogproof.scene.lights import one_direction, one_point
 from fogproof.scene.occluders import Sphere
+from fogproof.scene.surfaces.plane import Plane
 from fogproof.validate import number
+
+Place = Plane | Sphere
+"""Where surfaces can be."""
 
 Finish = Literal["lambert", "mirror"]
 """How a surface reflects: equally into all directions, or like a mirror."""
-
-
-@dataclass(frozen=True)
-class Plane:
-    """An endless plane, seen from both sides.
-
-    point   (x, y, z) on it [m]
-    normal  unit vector, either side
-    """
-
-    point: tuple[float, float, float]
-    normal: tuple[float, float, float]
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "point", one_point("point", self.point))
-        object.__setattr__(self, "normal", one_direction("normal", self.normal))
 
 
 @dataclass(frozen=True)
@@ -40,13 +27,13 @@ class Surface:
     radiance  that it emits, the same in all directions [W/(m^2 sr)]
     """
 
-    place: Plane | Sphere
+    place: Place
     albedo: float = 0.0
     finish: Finish = "lambert"
     radiance: float = 0.0
 
     def __post_init__(self) -> None:
-        if not isinstance(self.place, Plane | Sphere):
+        if not isinstance(self.place, Place):
             raise InvalidValueError("place", "must be a Plane or a Sphere", self.place)
         if self.finish not in get_args(Finish):
             raise InvalidValueError("finish", f"must be one of {', '.join(get_args(Finish))}", self.finish)

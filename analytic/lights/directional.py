@@ -10,43 +10,47 @@ quadratic, which t = middle + radius sin(x) makes an entire function of x for Ga
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
+from fogproof.analytic.airlight.beam import Beam
 from fogproof.analytic.airlight.phase import airlight_phase
+from fogproof.analytic.airlight.result import Result
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
-from fogproof.analytic.arithmetic.gauss_legendre import NODES, WEIGHTS
 from fogproof.analytic.geometry.convex_shapes import Chord, chord, faces
 from fogproof.analytic.geometry.flat_rays import FlatRays
 from fogproof.analytic.geometry.shadows import Shadow, shadow_of_direction
 from fogproof.analytic.phase.functions import phase_pdf
-from fogproof.errors import UnsupportedError
-from fogproof.scene import Medium
+from fogproof.scene import AnyMedium, Medium
+from fogproof.scene.kinds import given
 from fogproof.scene.lights import DirectionalLight
 from fogproof.scene.occluders import Occluder
-from fogproof.scene.shapes import Ball, Shape, Unbounded
+from fogproof.scene.shapes import Shape
 
 SOURCE = "Beer's law along both ways, integrated"
 
-LARGEST_DEPTH = 2e4
-"""Optical radius of a ball beyond which its quadrature would take too many panels."""
+
+def beam(light: DirectionalLight, _ray: FlatRays, _exact: bool) -> Beam:
+    """Return the light for quadrature along rays."""
+    return Beam(travel=np.array(light.direction))
 
 
-def directional_light(
-    medium: Medium, ray: FlatRays, light: DirectionalLight, shape: Shape, occluders: Sequence[Occluder]
-) -> tuple[np.ndarray, np.ndarray, str, str]:
-    """Return the radiance (n, channels) along the flattened rays, its error, method and source."""
+def single_scattering(
+    medium: AnyMedium, ray: FlatRays, light: DirectionalLight, shape: Shape, occluders: Sequence[Occluder], **_how: Any
+) -> Result | None:
+    """Return the radiance (n, channels) along the flattened rays and a bound of its error; None for other media and shapes."""
+    curved = given(shape, "fogproof.analytic.shapes", "parallel_light")
+    if not isinstance(medium, Medium) or (curved is None and faces(shape) is None):
+        return None
     sigma = np.atleast_1d(medium.sigma_t)
     count = ray.length.size
-    if isinstance(shape, Unbounded):
-        zero = np.zeros((count, len(sigma)))
-        return zero, zero, "no light arrives from infinitely far", SOURCE
     inside = chord(shape, ray)
     shadows = [shadow_of_direction(occluder, ray, light.direction) for occluder in occluders]
     with np.errstate(all="ignore"):
         start, end, owner, weight = _pieces(shape, ray, light, inside, shadows)
-        method = _ball if isinstance(shape, Ball) else _polyhedron
-        parts, errors = method(shape, ray, light, sigma, start, end, owner, inside.start)
+        method = curved or _polyhedron
+        parts, errors = method(shape, ray, np.array(light.direction), sigma, start, end, owner, inside.start)
 
         def gather(x: np.ndarray) -> np.ndarray:
             out = np.zeros((count, len(sigma)))
@@ -64,7 +68,7 @@ def directional_light(
         scale = np.atleast_1d(np.multiply(medium.sigma_s, light.irradiance))
         total = np.where(scale > 0, value * scale * f.value[:, None], 0.0)
         error = scale * (error * f.value[:, None] + value * f_error[:, None]) + 4 * EPS * total + TINY
-    name = "Gauss-Legendre 28" if isinstance(shape, Ball) else "closed form"
+    name = "Gauss-Legendre 28" if curved else "closed form"
     return total, np.where(scale > 0, error, 0.0), f"{name} along the ray", SOURCE
 
 
@@ -73,7 +77,10 @@ def _pieces(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Return start and end [m], ray, and the weight (1, or 1/2 where unsure) of the lit pieces between all breaks."""
     start, end = inside.start[:, None], inside.end[:, None]
-    places = [np.stack([inside.sure_start, inside.sure_end], axis=1), _changes_of_face(shape, ray, light)]
+    places = [
+        np.stack([inside.sure_start, inside.sure_end], axis=1),
+        _changes_of_face(shape, ray, np.array(light.direction)),
+    ]
     places += [np.stack(shadow, axis=1) for shadow in shadows]
     every = np.concatenate(places, axis=1)
     every = np.where((every > start) & (every < end), every, start)
@@ -91,13 +98,16 @@ def _pieces(
     return low[lit], high[lit], owner[lit], weight[lit]
 
 
-def _ways_back(shape: Shape, ray: FlatRays, light: DirectionalLight) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _ways_back(shape: Shape, ray: FlatRays, travel: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return (n, k) offsets and slopes of the linear ways back to each face the light can come in by, and their scale.
 
     The way back from the point at t is the least of offset + slope t; none means that no light comes in at all.
     """
-    normals, offsets = faces(shape)
-    facing = -(normals @ np.array(light.direction))
+    planes = faces(shape)
+    if planes is None:  # curved: nothing changes suddenly
+        return np.empty((len(ray.origin), 0)), np.empty((len(ray.origin), 0)), np.empty((len(ray.origin), 0))
+    normals, offsets = planes
+    facing = -(normals @ travel)
     entered = facing > 1e-150  # a face edge-on is infinitely far
     normals, offsets, facing = normals[entered], offsets[entered], facing[entered]
     origin, d = ray.origin, ray.direction
@@ -105,9 +115,9 @@ def _ways_back(shape: Shape, ray: FlatRays, light: DirectionalLight) -> tuple[np
     return (offsets - origin @ normals.T) / facing, -(d @ normals.T) / facing, size / facing
 
 
-def _changes_of_face(shape: Shape, ray: FlatRays, light: DirectionalLight) -> np.ndarray:
+def _changes_of_face(shape: Shape, ray: FlatRays, travel: np.ndarray) -> np.ndarray:
     """Return (n, m) places where two faces are equally far."""
-    offset, slope, _ = _ways_back(shape, ray, light)
+    offset, slope, _ = _ways_back(shape, ray, travel)
     i, j = np.triu_indices(offset.shape[1], 1)
     return -(offset[:, i] - offset[:, j]) / (slope[:, i] - slope[:, j])
 
@@ -115,7 +125,7 @@ def _changes_of_face(shape: Shape, ray: FlatRays, light: DirectionalLight) -> np
 def _polyhedron(
     shape: Shape,
     ray: FlatRays,
-    light: DirectionalLight,
+    travel: np.ndarray,
     sigma: np.ndarray,
     start: np.ndarray,
     end: np.ndarray,
@@ -123,7 +133,7 @@ def _polyhedron(
     enter: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return int exp(-sigma path) dt over each piece, (p, channels), and its error: len exp(-sigma nearer) phi_1."""
-    offset, slope, size = (x[owner] for x in _ways_back(shape, ray, light))
+    offset, slope, size = (x[owner] for x in _ways_back(shape, ray, travel))
     if not offset.shape[1]:
         return np.zeros((len(owner), len(sigma))), np.zeros((len(owner), len(sigma)))
     middle = np.where(end < np.inf, 0.5 * (start + end), start + 1.0 + np.abs(start))
@@ -141,51 +151,3 @@ def _polyhedron(
     # The way may be shorter by that, which is a lot only where the light grazes a face.
     at_most = np.exp(-sigma * np.maximum(path - uncertain, 0.0)[:, None]) * reach
     return value, (at_most - value) + (np.minimum(sigma * uncertain[:, None], 1.0) + 16 * EPS) * value + TINY
-
-
-def _ball(
-    shape: Shape,
-    ray: FlatRays,
-    light: DirectionalLight,
-    sigma: np.ndarray,
-    start: np.ndarray,
-    end: np.ndarray,
-    owner: np.ndarray,
-    enter: np.ndarray,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return int exp(-sigma path) dt over each piece, (p, channels), and its error."""
-    assert isinstance(shape, Ball)
-    R, v = shape.radius, np.array(light.direction)
-    if R * sigma.max() > LARGEST_DEPTH:
-        raise UnsupportedError(
-            f"parallel light in a ball of optical radius {R * sigma.max():g} > {LARGEST_DEPTH:g}", "shape"
-        )
-    origin, d = ray.origin[owner] - np.array(shape.center), ray.direction[owner]
-    Q0, Q1 = np.cross(origin, v), np.cross(d, v)
-    bend = np.sum(Q1 * Q1, axis=1)
-    middle = np.where(bend > 0, -np.sum(Q0 * Q1, axis=1) / bend, 0.0)
-    nearest = Q0 + middle[:, None] * Q1
-    radius = np.sqrt(np.maximum(R * R - np.sum(nearest * nearest, axis=1), 0.0) / bend)
-    # For a larger radius the root is nearly straight over the ball, and smooth; for a tiny one the ray just touches it.
-    bent = (radius < 4 * R) & (radius > EPS * R)
-    first, last = (np.clip((t - middle) / np.where(bent, radius, 1.0), -1, 1) for t in (start, end))
-    low, high = np.where(bent, np.arcsin(first), start), np.where(bent, np.arcsin(last), end)
-    lost = np.where(bent, np.maximum((end - start) - radius * (last - first), 0.0), 0.0)  # at the margins
-    panels = np.ceil(2 + sigma.max() * (end - start) / 4).astype(int)
-    value, error = np.zeros((2, len(owner), len(sigma)))
-    for i in range(len(owner)):
-        edges = np.linspace(low[i], high[i], panels[i] + 1)
-        x = edges[:-1] + NODES[:, None] * np.diff(edges)
-        weights = WEIGHTS[:, None] * np.diff(edges)
-        t = np.clip(middle[i] + radius[i] * np.sin(x), start[i], end[i]) if bent[i] else x
-        weights = weights * radius[i] * np.cos(x) if bent[i] else weights
-        Q = Q0[i] + t[..., None] * Q1[i]
-        half = np.sqrt(np.maximum(R * R - np.sum(Q * Q, axis=-1), 0.0))
-        way = np.maximum(origin[i] @ v + t * (d[i] @ v) + half, 0.0)
-        path = np.maximum(t - enter[owner[i]], 0.0) + way
-        # The root of a rounded difference: eps R^2 / half, and never more than sqrt(eps) R.
-        blur = 16 * EPS * (np.abs(origin[i]).max() + R) * (2 + np.minimum(R / half, EPS**-0.5))
-        f = np.exp(-sigma[:, None, None] * path) * weights
-        value[i] = f.sum(axis=(1, 2))
-        error[i] = (f * np.expm1(sigma[:, None, None] * blur)).sum(axis=(1, 2)) + 64 * EPS * value[i] + lost[i]
-    return value, error + TINY
