@@ -241,7 +241,7 @@ def test_an_unseen_peak_of_half_the_mass_is_found():
     assert verdict.outcome == "rejected", str(verdict)
     whole = next(f for f in verdict.findings if f.check == "labels")
     integral, error = map(float, whole.message.split("integrates to ")[1].split(" +- "))
-    assert error < 0.2
+    assert integral > 1.2, "most of what nobody sampled is found"
     assert abs(integral - 1.5) < 7 * error, str(verdict)
 
 

@@ -24,6 +24,9 @@ _ANYWHERE = 0.1  # share of the domain's own law
 _LOOK = 1 << 18  # evenly spread points
 _CHECKED = 1 << 15  # pilot points at which the effect of rounding is looked at
 _UNSEEN = 0.9  # probability of being a sample, above which the pilot should have been there
+_NEGLIGIBLE = 1e-3  # mass that need not be followed
+_ROUNDS = 3  # of following
+_LEAST_PILOT = 1 << 14  # points that a histogram is made of, at least
 _FOLLOWED = 0.25  # share of the points that follow what the pilot has not seen
 _MOVED = 1e-2  # relative change of the pdf by rounding, from which on its value says nothing
 _SIX = 6.0  # standard deviations
@@ -55,30 +58,39 @@ class Mixture:
         return Mixture(subject, law, Tree.of(u, _PER_LEAF), seed, most, rounded)
 
     def wider(self, points: np.ndarray) -> Mixture:
-        """Return the mixture that also follows the pdf where it is high and no pilot point was."""
+        """Return the mixture that also follows the pdf where it is high and no pilot point was: evenly spread points find it."""
         rng = batch_generator(self.seed, "labels", 0, 1)
-        unseen = self._unseen(rng)
+        k = len(self.law.axes)
+        u = lattice(_LOOK, k, rng.random(k))
+        x = self.law.place(u)
+        unseen = self._unseen(rng, u, x, self.law.density(x))
         if len(unseen) == 0:
             return self
-        u = self.law.coordinates(points, rng.random((len(points), len(self.law.axes))))
-        n = max(len(u), 1 << 14)
-        follow = unseen[rng.integers(0, len(unseen), int(_FOLLOWED * n))]
-        side = _LOOK ** (-1 / len(self.law.axes))
-        follow = np.clip(follow + side * (rng.random(follow.shape) - 0.5), 0, 1)
-        return replace(self, tree=Tree.of(rng.permutation(np.concatenate([u, follow])), _PER_LEAF))
+        own = self.law.coordinates(points, rng.random((len(points), k)))
+        n = max(len(own), _LEAST_PILOT)
+        found, wider, side = np.empty((0, k)), self, _LOOK ** (-1 / k)
+        for _ in range(_ROUNDS):  # each finds more of the place whose edge the last one found
+            follow = unseen[rng.integers(0, len(unseen), int(_FOLLOWED * n))]
+            follow = np.clip(follow + side * (rng.random(follow.shape) - 0.5), 0, 1)
+            found = np.concatenate([found, follow])
+            wider = replace(self, tree=Tree.of(rng.permutation(np.concatenate([own, found])), _PER_LEAF))
+            x, u = wider._drawn(rng, n)
+            unseen = wider._unseen(rng, u, x, wider._q(x, u, wider.tree.leaf(u)))
+            if len(unseen) == 0:
+                break
+        return wider
 
-    def _unseen(self, rng: np.random.Generator) -> np.ndarray:
-        """Return coordinates (m, k) where the pdf is high and no pilot point was, repeated by how much mass it has there."""
-        shift = rng.random(len(self.law.axes))
-        u = lattice(_LOOK, len(self.law.axes), shift)
-        x = self.law.place(u)
+    def _unseen(self, rng: np.random.Generator, u: np.ndarray, x: np.ndarray, law: np.ndarray) -> np.ndarray:
+        """Return those of the coordinates u (n, k) where the pdf is high beyond the histogram, repeated by the mass they stand for.
+
+        x, law  the points there, and the density (n,) that they were drawn with
+        """
         p = self.density(x)
-        base = self.law.density(x)
-        q = self._q(x, u, self.tree.leaf(u))
         with np.errstate(all="ignore"):
-            mass = np.where(np.isfinite(p) & (p > _UNSEEN / (1 - _UNSEEN) * q), p / base, 0.0)
+            high = np.isfinite(p) & (p > _UNSEEN / (1 - _UNSEEN) * self._q(x, u, self.tree.leaf(u)))
+            mass = np.where(high, p / law, 0.0)
         total = mass.sum()
-        if not total > 1e-3 * _LOOK:
+        if not total > _NEGLIGIBLE * len(u):
             return np.empty((0, u.shape[1]))
         return u[rng.choice(len(u), 1 << 12, p=mass / total)]
 
