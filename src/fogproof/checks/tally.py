@@ -18,7 +18,7 @@ from fogproof.checks.density.grid import Grid
 from fogproof.checks.mixture import Mixture
 from fogproof.checks.promises import Watch
 from fogproof.checks.statistics.labels import Sums
-from fogproof.checks.statistics.means import Moments
+from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.statistics.repeats import KEPT, fingerprints
 from fogproof.checks.statistics.serial import Successions
 from fogproof.checks.streams import BATCH
