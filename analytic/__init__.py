@@ -39,7 +39,13 @@ from fogproof.analytic.multiple.slab import (
 )
 from fogproof.analytic.multiple.slab_brdf import slab_brdf
 from fogproof.analytic.multiple.slab_orders import slab_reflectance_orders, slab_transmittance_orders
-from fogproof.analytic.phase.functions import phase_cdf, phase_mean_cosine, phase_pdf, phase_quantile
+from fogproof.analytic.phase.functions import (
+    phase_cdf,
+    phase_legendre_moments,
+    phase_mean_cosine,
+    phase_pdf,
+    phase_quantile,
+)
 from fogproof.analytic.phase.rayleigh_coefficient import rayleigh_scattering_coefficient
 from fogproof.analytic.phase.varying import phase_pdf_at
 from fogproof.analytic.proven.golden import Golden, golden_values
@@ -92,6 +98,7 @@ __all__ = [
     "mean_square_displacement",
     "optical_thickness",
     "phase_cdf",
+    "phase_legendre_moments",
     "phase_mean_cosine",
     "phase_pdf",
     "phase_pdf_at",

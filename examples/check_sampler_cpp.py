@@ -41,4 +41,4 @@ def pdf(x):
 
 verdict = fogproof.check_sampler(sample, pdf, fogproof.UnitSphere(), dimensions=2, axis=(0, 0, 1), mean_cosine=0.8)
 print(verdict)
-verdict.raise_if_rejected()
+verdict.raise_unless_passed()

@@ -72,6 +72,10 @@ def integrate(segments: Segments, phase: AirlightPhase, gain: Gain | None = None
             some = Segments(*(x[block] for x in segments))
             value[block], error[block] = integrate(some, phase, gain.of(np.arange(count)[block]) if gain else None)
         return value, error
+    if phase.finer.size:
+        coarse = integrate(segments, phase._replace(finer=np.empty(0)), gain)[0]
+        value, error = integrate(segments, phase._replace(finer=np.empty(0), kinks=phase.finer), gain)
+        return value, np.where(np.isfinite(value), error + np.abs(np.nan_to_num(value - coarse)), error)
     if phase.kinks.size:
         return _between_kinks(segments, phase, gain)
     exact = phase.absolute == 0 and phase.floor > 0 and not phase.noisy and gain is None

@@ -1,207 +1,182 @@
-"""Airlight in any medium, by adaptive quadrature along the ray with the optical thickness of both ways at each node.
+"""Airlight of any light in any medium, by adaptive quadrature along the ray with the optical thickness of both ways at each node.
 
-    L = int T(camera, x) sigma_s(x) f_p(x, mu) E(x) dt,    E = I T(x, light) / r^2, or E_0 T(x, outside) for parallel light
+    L = int T(camera, x) sigma_s(x) int f_p(x, mu) L_light(x, w) T(x, light) dw dt
 
-For a light with a position, t = h sinh(s) takes the 1/r^2 away as in the airlight integral. The ray is cut where the
-medium, a cone, a shadow or the phase function breaks, and integrated by `adaptive_panels`. The error of each optical
-thickness is carried along. Features smaller than the panels that no node meets cannot be seen.
+A light at a point or from infinitely far has one direction w a point (`beam`), and the inner integral is f_p E T; light with extent
+has many (`incident`). For a light somewhere, t = h sinh(s) about it takes its 1/r^2 away as in the airlight integral. The ray is
+cut where the medium, the light, a shadow or the phase function breaks, and integrated by `adaptive_panels`. The error of each
+optical thickness is carried along. Features smaller than the panels that no node meets cannot be seen.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 
-from fogproof.analytic.airlight.light_cone import edges, intensity_at, lit_by_cone
-from fogproof.analytic.airlight.phase import airlight_phase
-from fogproof.analytic.airlight.ray_and_light import Placement, meets_light, place
-from fogproof.analytic.arithmetic.adaptive_panels import PANELS, Look, integrate_panels
+from fogproof.analytic.airlight.attenuation import attenuation
+from fogproof.analytic.airlight.beam import Beam
+from fogproof.analytic.airlight.incident import Extent, Incident, Rule, received
+from fogproof.analytic.airlight.lit_pieces import Pieces, from_light, lit_pieces, points_and_slope
+from fogproof.analytic.airlight.ray_and_light import meets_light
+from fogproof.analytic.airlight.result import Result
+from fogproof.analytic.arithmetic.adaptive_panels import Look, integrate_panels
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
-from fogproof.analytic.geometry.convex_shapes import chord, contains, through
+from fogproof.analytic.geometry.convex_shapes import contains
 from fogproof.analytic.geometry.flat_rays import FlatRays
-from fogproof.analytic.geometry.shadows import shadow_of_direction, shadow_of_point
-from fogproof.analytic.media.breakpoints import breakpoints
+from fogproof.analytic.geometry.shadows import Shadow, shadow_of_direction, shadow_of_point
 from fogproof.analytic.media.coefficients import coefficients
 from fogproof.analytic.phase.functions import phase_pdf
 from fogproof.analytic.phase.varying import share_at
-from fogproof.analytic.rays.transmittance import thickness
 from fogproof.errors import UnsupportedError
-from fogproof.scene import AnyMedium, Medium, Ray, VaryingPhase
-from fogproof.scene.lights import DirectionalLight, PointLight, SpotLight, strength
+from fogproof.scene import AnyMedium, VaryingPhase
+from fogproof.scene.kinds import given
+from fogproof.scene.lights import Light, strength
 from fogproof.scene.occluders import Occluder
-from fogproof.scene.shapes import Shape, Unbounded
+from fogproof.scene.shapes import Shape
 
 METHOD = "adaptive Gauss-Legendre 16 along the ray, optical thickness at each node"
+OVER_DIRECTIONS = METHOD + ", rules over the directions of the light"
 SOURCE = "nested quadrature of the rendering equation, one order of scattering"
+ROOM = "fogproof.analytic.lights"
 
-Aimed = PointLight | SpotLight | DirectionalLight
-
-
-class Pieces(NamedTuple):
-    """Lit pieces of rays without breaks inside, (p,) each.
-
-    ray         which ray a piece belongs to
-    start, end  distances from the camera [m]
-    span        length in the variable of integration: asinh(t/h), or the distance for parallel light
-    weight      1, or 1/2 where it is unsure whether the light reaches it
-    """
-
-    ray: np.ndarray
-    start: np.ndarray
-    end: np.ndarray
-    span: np.ndarray
-    weight: np.ndarray
+Attenuated = tuple[np.ndarray, np.ndarray]
+"""A value and its error, (m, channels) each."""
 
 
 def single_scattering_by_quadrature(
-    medium: AnyMedium, ray: FlatRays, light: Aimed, shape: Shape, occluders: Sequence[Occluder]
-) -> tuple[np.ndarray, np.ndarray, str, str]:
+    medium: AnyMedium, ray: FlatRays, light: Light, shape: Shape, occluders: Sequence[Occluder]
+) -> Result:
     """Return the radiance (n, channels) along the flattened rays, its estimated error, method and source."""
-    where = None if isinstance(light, DirectionalLight) else place(ray, light.position)
+    beam_of, rule = given(light, ROOM, "beam"), given(light, ROOM, "incident")
+    if beam_of is None and rule is None:
+        raise UnsupportedError(f"single scattering of a {type(light).__name__} is not known", "light")
     with np.errstate(all="ignore"):
-        pieces = _pieces(medium, ray, light, shape, occluders, where)
-        look = _integrand(medium, ray, light, shape, where, pieces)
+        if beam_of is not None:
+            beam: Beam = beam_of(light, ray)
+            pieces = lit_pieces(medium, ray, shape, beam, None, _shadows(beam, light, ray, occluders))
+            look = _from_one_direction(medium, ray, shape, beam, light, pieces)
+        else:
+            if occluders:
+                what = "half shadows have edges that no rule over directions knows"
+                raise UnsupportedError(f"occluders before a {type(light).__name__}: {what}", "occluders")
+            extent_of = given(light, ROOM, "extent")
+            extent: Extent | None = extent_of and extent_of(light, ray)
+            pieces = lit_pieces(medium, ray, shape, Beam(), extent, [])
+            look = _from_many(medium, ray, shape, lambda x, nodes: rule(light, x, nodes), pieces)
         value, error = integrate_panels(pieces.span, look, pieces.ray, pieces.weight, len(ray.length))
         scale = np.atleast_1d(strength(light))
         error = np.where(scale > 0, scale * error + 4 * EPS * scale * value + TINY, 0.0)
         value = np.where(scale > 0, scale * value, 0.0)
-        if where is not None and not isinstance(light, DirectionalLight):
-            on_light = meets_light(where)
-            value[on_light], error[on_light] = _at_the_light(medium, ray, light, shape, occluders, on_light)
-    return value, error, METHOD, SOURCE
+        if beam_of is not None and beam.where is not None:
+            on_light = meets_light(beam.where)
+            value[on_light], error[on_light] = _at_the_light(medium, ray, light, beam, shape, occluders, on_light)
+    return value, error, METHOD if beam_of else OVER_DIRECTIONS, SOURCE
 
 
-def _pieces(
-    medium: AnyMedium, ray: FlatRays, light: Aimed, shape: Shape, occluders: Sequence[Occluder], where: Placement | None
-) -> Pieces:
-    if isinstance(medium, Medium):
-        inside = chord(shape, ray)
-        breaks = np.stack([inside.start, inside.end], axis=1)
-    else:
-        breaks = breakpoints(medium, Ray(*ray))
-    if np.isinf(breaks).any():
-        raise UnsupportedError("an endless ray through a medium without end: give the ray a length", "ray")
-    start, end = breaks[:, :1], breaks[:, -1:]
-    places, shadows = [breaks], []
-    detail = getattr(medium, "detail", np.inf)
-    if detail < np.inf:  # panels no wider than what a user's function says it has in store
-        steps = min(int(np.ceil(np.max(end - start, initial=0.0) / detail)), PANELS)
-        places.append(start + detail * np.arange(1, steps))
-    for occluder in occluders:
-        if isinstance(light, DirectionalLight):
-            shadows.append(shadow_of_direction(occluder, ray, light.direction))
-        else:
-            shadows.append(shadow_of_point(occluder, ray, light.position))
-    places += [np.stack(shadow, axis=1) for shadow in shadows]
-    if where is not None:
-        phases = [medium.phase.first, medium.phase.second] if isinstance(medium.phase, VaryingPhase) else [medium.phase]
-        mu = np.concatenate([airlight_phase(phase).kinks for phase in phases])
-        kinks = -where.h[:, None] * (mu / np.sqrt((1 - mu) * (1 + mu)))
-        cone = edges(where, light) if isinstance(light, SpotLight) else np.empty((len(where.h), 0))
-        nearest = np.zeros((len(where.h), 1))
-        places.append(np.concatenate([kinks, cone, nearest], axis=1) - where.a[:, None])
-    every = np.concatenate(places, axis=1)
-    every = np.sort(np.where((every >= start) & (every <= end), every, start), axis=1)
-    owner, k = np.nonzero(every[:, 1:] > every[:, :-1])
-    low, high = every[owner, k], every[owner, k + 1]
-    middle = 0.5 * (low + high)
-    weight = np.ones(len(owner))
-    if where is not None and isinstance(light, SpotLight):
-        weight = lit_by_cone(where, light, owner, where.a[owner] + middle)
-    for shadow in shadows:
-        outer, dark, undark, over = (x[owner] for x in shadow)
-        weight = np.where((middle > outer) & (middle < over), np.minimum(weight, 0.5), weight)
-        weight = np.where((middle > dark) & (middle < undark), 0.0, weight)
-    lit = weight > 0
-    if where is not None:
-        lit &= ~meets_light(where)[owner]
-    owner, low, high, weight = owner[lit], low[lit], high[lit], weight[lit]
-    span = high - low
-    if where is not None:
-        a, h = where.a[owner], where.h[owner]
-        (r0, w0, wt0), (r1, w1, wt1) = _from_light(a + low, h), _from_light(a + high, h)
-        ratio = span / (r0 + r1) * np.where(a + low >= 0, (w0 + w1) / w0, (wt0 + wt1) / wt1)
-        span = np.log1p(ratio)
-        span = np.where(np.isfinite(span), span, 0.0)
-    return Pieces(owner, low, high, span, weight)
+def _shadows(beam: Beam, light: Light, ray: FlatRays, occluders: Sequence[Occluder]) -> list[Shadow]:
+    if beam.travel is not None:
+        return [shadow_of_direction(occluder, ray, tuple(beam.travel)) for occluder in occluders]
+    return [shadow_of_point(occluder, ray, _position(light)) for occluder in occluders]
 
 
-def _from_light(t: np.ndarray, h: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return r, r + t and r - t without cancellation."""
-    r = np.hypot(t, h)
-    near = h * (h / (r + np.abs(t)))
-    near = np.where(r > 0, near, 0.0)
-    return r, np.where(t >= 0, r + t, near), np.where(t >= 0, near, r - t)
+def _position(light: Light) -> tuple[float, float, float]:
+    position: tuple[float, float, float] = light.position  # type: ignore[union-attr]  # a beam from a point has one
+    return position
 
 
-def _integrand(
-    medium: AnyMedium, ray: FlatRays, light: Aimed, shape: Shape, where: Placement | None, pieces: Pieces
-) -> Look:
-    """Return the integrand of each piece in its variable, for a light of unit strength."""
-    own = pieces.ray
+def _scattering(medium: AnyMedium, x: np.ndarray, w: np.ndarray) -> np.ndarray:
+    """Return sigma_s (m, channels) at points x (m, 3) for light along w (m, 3)."""
     channels = medium.channels or 1
-    travel = np.array(light.direction) if isinstance(light, DirectionalLight) else np.zeros(3)
+    return np.broadcast_to(
+        coefficients(medium, x, w, medium.channels).sigma_s.reshape(-1, channels), (len(x), channels)
+    )
+
+
+def _phase(medium: AnyMedium, x: np.ndarray, mu: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return f_p and its error, (m,) each, at points x (m, 3)."""
     phase = medium.phase
+    if isinstance(phase, VaryingPhase):
+        first, second, q = phase_pdf(phase.first, mu), phase_pdf(phase.second, mu), share_at(phase, x)
+        return (1 - q) * first.value + q * second.value, first.error + second.error
+    found = phase_pdf(phase, mu)
+    return found.value, found.error
 
-    def survival(x: np.ndarray, direction: np.ndarray, length: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Optical thickness (m, channels) of the ways, and its error."""
-        if isinstance(medium, Medium) and not isinstance(shape, Unbounded):
-            enter, leave = through(shape, x, direction)
-            way = np.maximum(np.minimum(leave, length) - np.maximum(enter, 0.0), 0.0)
-            tau = np.nan_to_num(way)[:, None] * np.atleast_1d(medium.sigma_t)
-            return tau, 64 * EPS * (tau + np.atleast_1d(medium.sigma_t) * np.abs(x).max(axis=1, initial=0.0)[:, None])
-        tau = thickness(medium, Ray(x, direction, length), medium.channels)
-        return tau.value.reshape(-1, channels), tau.error.reshape(-1, channels) + 4 * EPS * tau.value.reshape(
-            -1, channels
-        )
 
-    def scattering(x: np.ndarray, w: np.ndarray, mu: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """sigma_s f_p (m, channels), and its error."""
-        local = coefficients(medium, x, w, medium.channels).sigma_s.reshape(-1, channels)
-        if isinstance(medium, Medium) and not isinstance(shape, Unbounded):
-            local = np.broadcast_to(local, (len(x), channels))
-        if isinstance(phase, VaryingPhase):
-            first, second, q = phase_pdf(phase.first, mu), phase_pdf(phase.second, mu), share_at(phase, x)
-            f, f_error = (1 - q) * first.value + q * second.value, first.error + second.error
-        else:
-            f, f_error = (reference := phase_pdf(phase, mu)).value, reference.error
-        return local * f[:, None], local * (f_error + 8 * EPS * f)[:, None]
+def _seen(medium: AnyMedium, shape: Shape, ray: FlatRays, i: np.ndarray, distance: np.ndarray) -> Attenuated:
+    """Return the optical thickness from the cameras of rays i (m,) to distances (m,), and its error."""
+    return attenuation(medium, shape, ray.origin[i], ray.direction[i], np.maximum(distance, TINY))
+
+
+def _from_one_direction(
+    medium: AnyMedium, ray: FlatRays, shape: Shape, beam: Beam, light: Light, pieces: Pieces
+) -> Look:
+    """Return the integrand of each piece in its variable, for a light of unit strength and one direction a point."""
+    channels = medium.channels or 1
+    where = beam.where
 
     def look(which: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        i = own[which]
+        i = np.repeat(pieces.ray[which], u.shape[1])
         uncertain = np.zeros((1, 1))  # of the intensity, where that varies with the angle
-        d = ray.direction[i][:, None, :]
-        if where is None or isinstance(light, DirectionalLight):
-            distance, jacobian = pieces.start[which, None] + u, np.ones(u.shape)
-            x = ray.origin[i][:, None, :] + distance[..., None] * d
-            back = np.broadcast_to(-travel, x.shape)
-            way, mu = np.full(u.shape, np.inf), np.broadcast_to(np.sum(back * d, axis=-1), u.shape)
+        if where is None:
+            distance, jacobian = (pieces.start[which, None] + u).ravel(), np.ones(u.size)
+            x = ray.origin[i] + distance[:, None] * ray.direction[i]
+            assert beam.travel is not None
+            back, way = np.broadcast_to(-beam.travel, x.shape), np.full(len(x), np.inf)
+            mu = np.sum(back * ray.direction[i], axis=1)
         else:
-            _, w0, wt0 = _from_light(where.a[i] + pieces.start[which], where.h[i])
+            own = pieces.ray[which]
+            _, w0, wt0 = from_light(where.a[own] + pieces.start[which], where.h[own])
             w, wt = w0[:, None] * np.exp(u), wt0[:, None] * np.exp(-u)
             r, t = 0.5 * (w + wt), 0.5 * (w - wt)
-            distance = np.clip(t - where.a[i][:, None], pieces.start[which, None], pieces.end[which, None])
-            x = ray.origin[i][:, None, :] + distance[..., None] * d
-            jacobian, mu = 1 / r, (wt - w) / (w + wt)
-            if isinstance(light, SpotLight):
-                aim, blur = intensity_at(where, light, i, t)
-                uncertain = (jacobian * blur).reshape(-1, 1)
-                jacobian = jacobian * aim
-            back = np.array(light.position) - x
-            length = np.linalg.norm(back, axis=-1)
-            back, way = back / length[..., None], length
-        flat, mu = x.reshape(-1, 3), np.clip(mu, -1, 1).ravel()
-        ahead = np.broadcast_to(d, x.shape).reshape(-1, 3)
-        origins = np.broadcast_to(ray.origin[i][:, None, :], x.shape).reshape(-1, 3)
-        near, near_error = survival(origins, ahead, np.maximum(distance.ravel(), TINY))
-        far, far_error = survival(flat, back.reshape(-1, 3), way.ravel())
-        source, source_error = scattering(flat, ahead, mu)
-        arrives = np.exp(-near - far) * jacobian.reshape(-1, 1)
-        value, error = source * arrives, source_error * arrives
-        error = error + source * np.exp(-near - far) * uncertain
+            distance = np.clip(t - where.a[own][:, None], pieces.start[which, None], pieces.end[which, None]).ravel()
+            x = ray.origin[i] + distance[:, None] * ray.direction[i]
+            inverse, mu = 1 / r, ((wt - w) / (w + wt)).ravel()
+            if beam.profile is not None:
+                aim, blur = beam.profile(own, t)
+                uncertain = (inverse * blur).reshape(-1, 1)
+                inverse = inverse * aim
+            jacobian = inverse.ravel()
+            back = np.array(_position(light)) - x
+            way = np.linalg.norm(back, axis=1)
+            back = back / way[:, None]
+        near, near_error = _seen(medium, shape, ray, i, distance)
+        far, far_error = attenuation(medium, shape, x, back, way)
+        f, f_error = _phase(medium, x, np.clip(mu, -1, 1))
+        through = _scattering(medium, x, ray.direction[i]) * np.exp(-near - far)
+        value = through * (f * jacobian)[:, None]
+        error = through * ((f_error + 8 * EPS * f) * jacobian)[:, None] + through * f[:, None] * uncertain
         error = error + value * np.expm1(near_error + far_error + 32 * EPS)
+        return value.reshape(*u.shape, channels), error.reshape(*u.shape, channels)
+
+    return look
+
+
+def _from_many(medium: AnyMedium, ray: FlatRays, shape: Shape, rule: Rule, pieces: Pieces) -> Look:
+    """Return the integrand of each piece in its variable, for light of radiance 1 from many directions."""
+    channels = medium.channels or 1
+
+    def look(which: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        i = np.repeat(pieces.ray[which], u.shape[1])
+        distance, slope = (part.ravel() for part in points_and_slope(pieces, which, u))
+        x, ahead = ray.origin[i] + distance[:, None] * ray.direction[i], ray.direction[i]
+
+        def total(some: np.ndarray, incident: Incident) -> Attenuated:
+            w = incident.direction.reshape(-1, 3)
+            points = np.repeat(x[some], incident.weight.shape[1], axis=0)
+            mu = np.clip(np.einsum("mkc,mc->mk", incident.direction, ahead[some]), -1, 1).ravel()
+            f, f_error = _phase(medium, points, mu)
+            far, far_error = attenuation(medium, shape, points, w, incident.distance.ravel())
+            arrives = np.exp(-far) * incident.weight.reshape(-1, 1)
+            noise = arrives * (f_error + 8 * EPS * f)[:, None] + arrives * f[:, None] * np.expm1(far_error + 16 * EPS)
+            size = (len(some), -1, channels)
+            return (arrives * f[:, None]).reshape(size).sum(axis=1), noise.reshape(size).sum(axis=1)
+
+        lit, off = received(x, rule, total, channels)
+        near, near_error = _seen(medium, shape, ray, i, distance)
+        scattered = _scattering(medium, x, ahead) * np.exp(-near) * slope[:, None]
+        value = scattered * lit
+        error = scattered * off + value * np.expm1(near_error + 32 * EPS)
         return value.reshape(*u.shape, channels), error.reshape(*u.shape, channels)
 
     return look
@@ -210,16 +185,17 @@ def _integrand(
 def _at_the_light(
     medium: AnyMedium,
     ray: FlatRays,
-    light: PointLight | SpotLight,
+    light: Light,
+    beam: Beam,
     shape: Shape,
     occluders: Sequence[Occluder],
     which: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return inf for rays that meet the light where the medium scatters; elsewhere no method here knows the answer."""
-    position = np.array(light.position)[None]
-    sigma_s = coefficients(medium, position, ray.direction[which][:1], medium.channels).sigma_s.reshape(-1)
     if not which.any():
         return np.empty((0, 1)), np.empty((0, 1))
-    if isinstance(light, SpotLight) or occluders or not (sigma_s > 0).all() or not contains(shape, position).all():
+    position = np.array(_position(light))[None]
+    sigma_s = coefficients(medium, position, ray.direction[which][:1], medium.channels).sigma_s.reshape(-1)
+    if beam.weight or occluders or not (sigma_s > 0).all() or not contains(shape, position).all():
         raise UnsupportedError("a ray that meets the light itself, where it is not sure to be infinitely bright", "ray")
     return np.full((which.sum(), 1), np.inf), np.zeros((which.sum(), 1))

@@ -20,7 +20,7 @@ import numpy as np
 from fogproof.analytic.airlight.phase import airlight_phase
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.errors import UnsupportedError, shorten
-from fogproof.scene.phase_functions import PhaseFunction
+from fogproof.scene.phase import PhaseFunction
 
 METHOD = "equiangular Gauss-Legendre 128"
 SOURCE = "Kulla & Fajardo 2012, section 4.1"

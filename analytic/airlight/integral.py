@@ -22,7 +22,7 @@ from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.analytic.proven.airlight import rigorous_airlight
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError, UnsupportedError
-from fogproof.scene.phase_functions import Isotropic, PhaseFunction
+from fogproof.scene.phase import Isotropic, PhaseFunction
 from fogproof.validate import as_float_array, require
 
 Method = Literal["asinh", "equiangular", "sun2005", "pegoraro2009", "pegoraro2010"]

@@ -15,7 +15,7 @@ import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.errors import UnsupportedError
-from fogproof.scene.phase_functions import Isotropic, PhaseFunction
+from fogproof.scene.phase import Isotropic, PhaseFunction
 
 METHOD = "Pegoraro & Parker 2009, complex exponential integral"
 SOURCE = "Pegoraro & Parker 2009, eq. 14"

@@ -28,7 +28,7 @@ import numpy as np
 from fogproof.analytic.airlight.pegoraro2009 import exponential_integral, v_of
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.errors import UnsupportedError
-from fogproof.scene.phase_functions import (
+from fogproof.scene.phase import (
     Hazy,
     HenyeyGreenstein,
     Isotropic,

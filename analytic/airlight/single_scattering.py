@@ -7,18 +7,16 @@ from collections.abc import Sequence
 import numpy as np
 
 from fogproof.analytic.airlight.by_quadrature import single_scattering_by_quadrature
-from fogproof.analytic.airlight.directional_light import directional_light
-from fogproof.analytic.airlight.environment_light import environment_light
 from fogproof.analytic.airlight.integral import Method
-from fogproof.analytic.airlight.point_light import point_light
-from fogproof.analytic.geometry.convex_shapes import contains
+from fogproof.analytic.airlight.result import Result
 from fogproof.analytic.geometry.flat_rays import FlatRays, blocks_of
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError, UnsupportedError
 from fogproof.scene import AnyMedium, Medium, Ray
-from fogproof.scene.lights import DirectionalLight, Environment, Light, PointLight, SpotLight, strength
+from fogproof.scene.kinds import given
+from fogproof.scene.lights import Light, strength
 from fogproof.scene.occluders import Occluder
-from fogproof.scene.shapes import Shape, Unbounded
+from fogproof.scene.shapes import EVERYWHERE, Shape
 from fogproof.validate import channel_count
 
 
@@ -50,16 +48,16 @@ def single_scattering(
     is the answer. For other media, environments and shapes without the light in them it is an estimate by quadrature.
     Source: Sun, Ramamoorthi, Narasimhan & Nayar 2005, A practical analytic single scattering model (homogeneous, point).
     """
-    shape = Unbounded() if shape is None else shape
-    for name, given, kinds in (("medium", medium, AnyMedium), ("light", light, Light), ("shape", shape, Shape)):
-        if not isinstance(given, kinds):
-            raise InvalidValueError(name, f"must be a {name}", given)
+    shape = EVERYWHERE if shape is None else shape
+    for name, thing, kinds in (("medium", medium, AnyMedium), ("light", light, Light), ("shape", shape, Shape)):
+        if not isinstance(thing, kinds):
+            raise InvalidValueError(name, f"must be a {name}", thing)
     if not isinstance(ray, Ray):
         raise InvalidValueError("ray", "must be a Ray", ray)
     for occluder in occluders:
         if not isinstance(occluder, Occluder):
             raise InvalidValueError("occluders", "must be a list of Sphere and Disk", occluder)
-    if not isinstance(medium, Medium) and not isinstance(shape, Unbounded):
+    if not isinstance(medium, Medium) and shape != EVERYWHERE:
         raise UnsupportedError(f"a {type(medium).__name__} has bounds of its own: leave the shape away", "shape")
     medium_channels = (0.0,) * medium.channels if medium.channels else 0.0
     channels = channel_count(medium=medium_channels, light=strength(light))
@@ -72,15 +70,11 @@ def single_scattering(
 
 def _along(
     medium: AnyMedium, ray: FlatRays, light: Light, shape: Shape, occluders: Sequence[Occluder], method: Method
-) -> tuple[np.ndarray, np.ndarray, str, str]:
-    """Return radiance and error (n, channels) of rays of shape (n,), method and source, by what serves them."""
-    match light:
-        case Environment():
-            return environment_light(medium, ray, light, shape, occluders)
-        case DirectionalLight() if isinstance(medium, Medium):
-            return directional_light(medium, ray, light, shape, occluders)
-        case PointLight() | SpotLight() if isinstance(medium, Medium) and contains(shape, np.array(light.position)):
-            return point_light(medium, ray, light, shape, occluders, method)
-        case DirectionalLight() | PointLight() | SpotLight():
-            return single_scattering_by_quadrature(medium, ray, light, shape, occluders)
-    raise InvalidValueError("light", "must be a light", light)
+) -> Result:
+    """Return radiance and error (n, channels) of rays of shape (n,), method and source: in closed form, or by quadrature."""
+    if light.distant and shape == EVERYWHERE and isinstance(medium, Medium):
+        zero = np.zeros((len(ray.length), medium.channels or 1))
+        return zero, zero, "no light arrives from infinitely far", "Beer's law"
+    known = given(light, "fogproof.analytic.lights", "single_scattering")
+    found: Result | None = known and known(medium, ray, light, shape=shape, occluders=occluders, method=method)
+    return found or single_scattering_by_quadrature(medium, ray, light, shape, occluders)

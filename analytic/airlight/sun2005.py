@@ -19,7 +19,7 @@ import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS
 from fogproof.errors import UnsupportedError
-from fogproof.scene.phase_functions import Isotropic, PhaseFunction
+from fogproof.scene.phase import Isotropic, PhaseFunction
 
 METHOD = "Sun et al. 2005, table of 512 x 512"
 SOURCE = "Sun, Ramamoorthi, Narasimhan & Nayar 2005, eqs. 9-11"

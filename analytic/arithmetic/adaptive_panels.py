@@ -74,7 +74,8 @@ def integrate_panels(
         totals = np.zeros_like(totals)
         np.add.at(totals, rays, done.value)
         share = TOLERANCE / number[rays][:, None] * totals[rays]
-        bad = (done.off > np.maximum(share, 4 * EPS * done.value)).any(axis=1)
+        # Halves of a panel whose integrand is uncertain by more would not be more certain.
+        bad = ((done.off > np.maximum(share, 4 * EPS * done.value)) & (done.off > 0.25 * done.noise)).any(axis=1)
         bad &= (number[rays] < PANELS) & (done.width > 1e-13 * (done.low + done.width))
         panels, done = Panels(*(x[bad] for x in done)), Panels(*(x[~bad] for x in done))
     panels = Panels(*(np.concatenate(x) for x in zip(done, panels, strict=True)))

@@ -8,21 +8,16 @@ import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS
 from fogproof.analytic.geometry.flat_rays import FlatRays
-from fogproof.scene.shapes import Ball, Box, HalfSpace, Shape, Slab, Unbounded
+from fogproof.scene.kinds import given
+from fogproof.scene.shapes import Shape
+
+ROOM = "fogproof.analytic.shapes"
 
 
-def faces(shape: Shape) -> tuple[np.ndarray, np.ndarray]:
-    """Return normals (k, 3) and offsets (k,) of a polyhedron: x is inside where every normal . x <= offset."""
-    match shape:
-        case HalfSpace(point, normal):
-            normals = np.array([normal])
-            return normals, normals @ np.array(point)
-        case Slab(point, normal, thickness):
-            offset = float(np.dot(normal, point))
-            return np.array([normal, np.negative(normal)]), np.array([offset, thickness - offset])
-        case Box(lower, upper):
-            return np.concatenate([np.eye(3), -np.eye(3)]), np.concatenate([upper, np.negative(lower)])
-    return np.empty((0, 3)), np.empty(0)
+def faces(shape: Shape) -> tuple[np.ndarray, np.ndarray] | None:
+    """Return normals (k, 3) and offsets (k,) of a polyhedron: x is inside where every normal . x <= offset; None if it is none."""
+    planes = given(shape, ROOM, "faces")
+    return None if planes is None else planes(shape)
 
 
 class Chord(NamedTuple):
@@ -39,10 +34,9 @@ class Chord(NamedTuple):
 def chord(shape: Shape, ray: FlatRays) -> Chord:
     """Return where the flattened rays are in the shape, with a margin for the rounding of all coordinates."""
     origin, direction, length = ray.origin, ray.direction, ray.length
-    if isinstance(shape, Unbounded):
-        zero = np.zeros(length.shape)
-        return Chord(zero, zero, length, length)
-    margin = 32 * EPS * (np.abs(origin).max(axis=1) + _size(shape))
+    margin = 32 * EPS * (np.abs(origin).max(axis=1) + size_of(shape))
+    reach = np.abs(np.nan_to_num(np.stack(through(shape, origin, direction, margin)), posinf=0.0, neginf=0.0))
+    margin = margin + 8 * EPS * np.minimum(reach.max(axis=0), length)  # what the direction is off by, so far away
     start, end = through(shape, origin, direction, margin)
     start, end = (
         np.clip(np.nan_to_num(start, nan=0.0, posinf=np.inf, neginf=-np.inf), 0, length),
@@ -64,14 +58,11 @@ def through(
     """
     origin, direction = np.broadcast_arrays(origin, direction)
     with np.errstate(all="ignore"):
-        if isinstance(shape, Ball):
-            q = origin - np.array(shape.center)
-            middle = -np.sum(q * direction, axis=-1)
-            distance = np.linalg.norm(q + middle[..., None] * direction, axis=-1)
-            radius = shape.radius + margin
-            half = np.sqrt((radius - distance) * (radius + distance))
-            return middle - half, middle + half
-        normals, offsets = faces(shape)
+        planes = faces(shape)
+        if planes is None:
+            enter, leave = given(shape, ROOM, "through")(shape, origin, direction, margin)
+            return enter, leave
+        normals, offsets = planes
         enter, leave = np.full(origin.shape[:-1], -np.inf), np.full(origin.shape[:-1], np.inf)
         for normal, offset in zip(normals, offsets, strict=True):
             room, speed = offset + margin - origin @ normal, direction @ normal
@@ -83,23 +74,17 @@ def through(
         return np.where(missed, np.nan, enter), np.where(missed, np.nan, leave)
 
 
-def _size(shape: Shape) -> float:
-    """Return the largest coordinate that the shape is given by."""
-    match shape:
-        case Ball(center, radius):
-            return float(np.abs(center).max() + radius)
-        case HalfSpace(point, _):
-            return float(np.abs(point).max())
-        case Slab(point, _, thickness):
-            return float(np.abs(point).max() + thickness)
-        case Box(lower, upper):
-            return float(np.abs([lower, upper]).max())
-    return 0.0
+def size_of(shape: Shape) -> float:
+    """Return the largest coordinate that the shape is given by, or a bound: the sum of all its numbers."""
+    size = given(shape, ROOM, "size")
+    return float(size(shape) if size else sum(np.abs(np.asarray(value, float)).sum() for value in vars(shape).values()))
 
 
 def contains(shape: Shape, point: np.ndarray) -> np.ndarray:
     """Return whether points (..., 3) are in the closed shape."""
-    if isinstance(shape, Ball):
-        return np.linalg.norm(point - np.array(shape.center), axis=-1) <= shape.radius
-    normals, offsets = faces(shape)
+    planes = faces(shape)
+    if planes is None:  # a line through the point is inside on both sides of it
+        enter, leave = through(shape, point, np.array([1.0, 0.0, 0.0]))
+        return (enter <= 0) & (leave >= 0)
+    normals, offsets = planes
     return np.all(point @ normals.T <= offsets, axis=-1)

@@ -14,7 +14,10 @@ import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS
 from fogproof.analytic.geometry.flat_rays import FlatRays
-from fogproof.scene.occluders import Occluder, Sphere
+from fogproof.scene.kinds import given
+from fogproof.scene.occluders import Occluder
+
+ROOM = "fogproof.analytic.occluders"
 
 Interval = tuple[np.ndarray, np.ndarray]
 
@@ -33,7 +36,9 @@ def shadow_of_point(occluder: Occluder, ray: FlatRays, light: tuple[float, float
     origin, d = ray.origin, ray.direction
     p = np.array(light)
     return _with_margin(
-        occluder, np.abs(origin).max(axis=1) + np.abs(p).max(), lambda o, m: _from_point(o, origin, d, p, m)
+        occluder,
+        np.abs(origin).max(axis=1) + np.abs(p).max(),
+        lambda o, m: given(o, ROOM, "from_point")(o, origin, d, p, m),
     )
 
 
@@ -41,7 +46,9 @@ def shadow_of_direction(occluder: Occluder, ray: FlatRays, travel: tuple[float, 
     """Return the shadow that the occluder casts on each (flattened) ray in parallel light."""
     origin, d = ray.origin, ray.direction
     v = np.array(travel)
-    return _with_margin(occluder, np.abs(origin).max(axis=1), lambda o, m: _from_direction(o, origin, d, v, m))
+    return _with_margin(
+        occluder, np.abs(origin).max(axis=1), lambda o, m: given(o, ROOM, "from_direction")(o, origin, d, v, m)
+    )
 
 
 def _with_margin(occluder: Occluder, scale: np.ndarray, interval: Callable[[Occluder, np.ndarray], Interval]) -> Shadow:
@@ -52,75 +59,12 @@ def _with_margin(occluder: Occluder, scale: np.ndarray, interval: Callable[[Occl
     return Shadow(start, dark_start, dark_end, end)
 
 
-def _from_point(
-    occluder: Occluder, origin: np.ndarray, d: np.ndarray, light: np.ndarray, margin: np.ndarray
-) -> Interval:
-    X, c = origin - light, np.array(occluder.center) - light
-    ahead = -_dot(X, d)  # distances are counted from the foot of the perpendicular, then from the origin
-    X = X + ahead[:, None] * d
-    R = occluder.radius + margin
-    if isinstance(occluder, Sphere):
-        tangent2 = (c @ c) - R * R
-        along, across = d @ c, X @ c
-        cone = _where_positive(
-            along * along - tangent2, across * along, across * across - _dot(X, X) * tangent2, along, across
-        )
-        half = np.sqrt(R * R - _dot(X - c + along[:, None] * d, X - c + along[:, None] * d))
-
-        def before(t: np.ndarray) -> np.ndarray:
-            """Whether a place in the cone lies on this side of where the cone touches the ball."""
-            return _dot(X, X) + t * t < tangent2
-
-        low, high = _behind(cone, along - half, along + half, before)
-        inside = tangent2 <= 0  # the light is in the ball
-        low, high = np.where(inside, -np.inf, low), np.where(inside, np.inf, high)
-    else:
-        n = np.array(occluder.normal)
-        to_plane = n @ c
-        N0, N1 = X @ n, d @ n
-        V0, V1 = X * to_plane - N0[:, None] * c, d * to_plane - N1[:, None] * c
-        R2, side = R * R, np.sign(to_plane)
-        low, high = _where_positive(
-            R2 * N1 * N1 - _dot(V1, V1), R2 * N0 * N1 - _dot(V0, V1), R2 * N0 * N0 - _dot(V0, V0), N1 * side, N0 * side
-        )
-        low, high = _beyond(low, high, N0 * side - abs(to_plane) + margin, N1 * side)
-        # A light in the disk itself may shine to either side, or to none; one beside it in its plane casts no shadow.
-        inside, beside = abs(to_plane) <= margin, np.sqrt(max(c @ c - to_plane * to_plane, 0.0))
-        low = np.where(inside, np.where(beside <= R, -np.inf, np.nan), np.where(to_plane == 0, np.nan, low))
-        high = np.where(inside, np.where(beside <= R, np.inf, np.nan), np.where(to_plane == 0, np.nan, high))
-    none = ~((low < high) & (R > 0))
-    return np.where(none, np.nan, low + ahead), np.where(none, np.nan, high + ahead)
-
-
-def _from_direction(
-    occluder: Occluder, origin: np.ndarray, d: np.ndarray, v: np.ndarray, margin: np.ndarray
-) -> Interval:
-    X = origin - np.array(occluder.center)
-    R = occluder.radius + margin
-    if isinstance(occluder, Sphere):
-        Xv, dv = np.cross(X, v), np.cross(d, v)
-        cylinder = _where_positive(-_dot(dv, dv), -_dot(Xv, dv), R * R - _dot(Xv, Xv))
-        middle = -_dot(X, d)
-        nearest = X + middle[:, None] * d
-        half = np.sqrt(R * R - _dot(nearest, nearest))
-        low, high = _behind(cylinder, middle - half, middle + half, lambda t: X @ v + t * (d @ v) < 0)
-    else:
-        n = np.array(occluder.normal)
-        facing = n @ v
-        with np.errstate(divide="ignore", invalid="ignore"):
-            past0, past1 = (X @ n) / facing, (d @ n) / facing
-        V0, V1 = X - past0[:, None] * v, d - past1[:, None] * v
-        low, high = _where_positive(-_dot(V1, V1), -_dot(V0, V1), R * R - _dot(V0, V0))
-        low, high = _beyond(low, high, past0 + margin / abs(facing), past1)
-    none = ~((low < high) & (R > 0))
-    return np.where(none, np.nan, low), np.where(none, np.nan, high)
-
-
-def _dot(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+def dot(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Return the dot products over the last axis."""
     return np.sum(x * y, axis=-1)
 
 
-def _where_positive(a: np.ndarray, b: np.ndarray, c: np.ndarray, forward1: Any = 0.0, forward0: Any = 1.0) -> Interval:
+def where_positive(a: np.ndarray, b: np.ndarray, c: np.ndarray, forward1: Any = 0.0, forward0: Any = 1.0) -> Interval:
     """Return the interval where a t^2 + 2 b t + c >= 0 and forward1 t + forward0 >= 0; NaN if there is none.
 
     The quadratic is positive inside a double cone or a cylinder, and the linear form in the nappe that counts.
@@ -139,7 +83,7 @@ def _where_positive(a: np.ndarray, b: np.ndarray, c: np.ndarray, forward1: Any =
     return low, high
 
 
-def _behind(
+def behind(
     cone: Interval, enter: np.ndarray, leave: np.ndarray, before: Callable[[np.ndarray], np.ndarray]
 ) -> Interval:
     """Return the part of the cone behind the ball, and in it: a line that meets the ball ends or begins at its front."""
@@ -152,7 +96,7 @@ def _behind(
     return np.where(in_front, np.nan, start), np.where(in_front, np.nan, end)
 
 
-def _beyond(low: np.ndarray, high: np.ndarray, past0: np.ndarray, past1: np.ndarray) -> Interval:
+def beyond(low: np.ndarray, high: np.ndarray, past0: np.ndarray, past1: np.ndarray) -> Interval:
     """Return the part of the interval where past0 + past1 t >= 0."""
     crossing = -past0 / past1
     low = np.where(past1 > 0, np.maximum(low, crossing), low)

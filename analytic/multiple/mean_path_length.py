@@ -7,14 +7,13 @@ scatterings.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS
 from fogproof.contracts import Reference
 from fogproof.errors import UnsupportedError
-from fogproof.scene.shapes import Ball, Box, Shape, Slab
+from fogproof.scene.kinds import given
+from fogproof.scene.shapes import Shape
 
 METHOD = "closed form"
 SOURCE = "Cauchy 1850; Blanco & Fournier 2003, An invariance property of diffusive random walks"
@@ -26,16 +25,10 @@ def mean_path_length(shape: Shape) -> Reference:
     Error: 4 eps, relative.
     Source: Blanco & Fournier 2003, An invariance property of diffusive random walks, Europhysics Letters 61.
     """
-    match shape:
-        case Slab(thickness=thickness):
-            value = 2 * thickness
-        case Ball(radius=radius):
-            value = 4 * radius / 3
-        case Box(lower, upper):
-            sides = np.subtract(upper, lower)
-            value = 2 / math.fsum(1 / sides)
-        case _:
-            raise UnsupportedError(f"4 V/S needs a slab, a ball or a box, got {type(shape).__name__}", "shape")
+    mean_chord = given(shape, "fogproof.analytic.shapes", "mean_chord")
+    if mean_chord is None:
+        raise UnsupportedError(f"4 V/S needs a slab, a ball or a box, got {type(shape).__name__}", "shape")
+    value = mean_chord(shape)
     return Reference(np.asarray(value), np.asarray(4 * EPS * value), METHOD, SOURCE)
 
 

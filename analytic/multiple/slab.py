@@ -16,7 +16,7 @@ from fogproof.analytic.multiple.slab_by_doubling import doubled_values
 from fogproof.analytic.multiple.slab_by_modes import SOURCE, Quantity, isotropic_values
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError, UnsupportedError
-from fogproof.scene.phase_functions import Isotropic, PhaseFunction
+from fogproof.scene.phase import Isotropic, PhaseFunction
 from fogproof.validate import number
 
 METHOD = "discrete ordinates"

@@ -11,11 +11,11 @@ import numpy as np
 from fogproof.analytic.arithmetic.double_double import divide, pair
 from fogproof.analytic.arithmetic.error_free import EPS, TINY, exp_minus
 from fogproof.analytic.multiple.doubling import layer
-from fogproof.analytic.multiple.legendre_moments import legendre_moments
 from fogproof.analytic.multiple.scattering_kernel import Scaled, medium, scaled
 from fogproof.analytic.multiple.slab_by_modes import Quantity
 from fogproof.analytic.multiple.slab_modes import quadrature
-from fogproof.scene.phase_functions import PhaseFunction
+from fogproof.analytic.phase.functions import phase_legendre_moments
+from fogproof.scene.phase import PhaseFunction
 
 LEVELS = (14, 20, 28, 40)
 """Half the number of nodes of a solution: the next ones are used where the last two differ."""
@@ -43,7 +43,10 @@ THINNEST = 1e-290
 
 
 class Moments(NamedTuple):
-    """chi_0 … and the errors of all, as a change of the phase function: sum (2 l + 1) error_l up to each l."""
+    """chi_0 …, and what a phase function whose first moments are off by their errors differs by, integrated over directions.
+
+    By Parseval's theorem that is at most the root of the sum of (2 l + 1) error_l^2.
+    """
 
     chi: np.ndarray
     change: np.ndarray
@@ -51,9 +54,9 @@ class Moments(NamedTuple):
 
 @lru_cache(maxsize=32)
 def _moments(phase: PhaseFunction) -> Moments:
-    chi = legendre_moments(phase, MOMENTS * LEVELS[-1])
-    error = 4 * EPS * np.abs(chi)
-    return Moments(chi, np.cumsum((2 * np.arange(len(chi)) + 1) * error))
+    moments = phase_legendre_moments(phase, MOMENTS * LEVELS[-1])
+    weight = 2 * np.arange(len(moments.value)) + 1
+    return Moments(moments.value, np.sqrt(np.cumsum(weight * moments.error**2)))
 
 
 def _first(chi: np.ndarray) -> int:
@@ -78,8 +81,10 @@ def doubled_values(
                 break
             found, collisions = _solution(pairs, which, mu0, moments.chi, quantity, todo, n)
             smaller = np.abs(np.log(np.clip(found, TINY, 1)))
-            change = moments.change[MOMENTS * n] * (1 + collisions + smaller)
-            rounding = (ROUNDING + 4 * EPS * smaller + change) * np.abs(found)
+            change = moments.change[MOMENTS * n] * collisions
+            if quantity == "transmitted":  # what passes a deep slab changes with the phase function in relative terms
+                change = np.minimum(change, moments.change[MOMENTS * n] * 10 * (1 + collisions + smaller) * found)
+            rounding = (ROUNDING + 4 * EPS * smaller) * np.abs(found) + change
             if before is None:
                 before = found
                 continue

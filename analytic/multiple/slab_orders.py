@@ -8,15 +8,15 @@ from typing import Any
 import numpy as np
 
 from fogproof.analytic.multiple.legendre_modes import complex_legendre_modes
-from fogproof.analytic.multiple.legendre_moments import legendre_moments
 from fogproof.analytic.multiple.orders import taylor_coefficients
 from fogproof.analytic.multiple.scattering_arguments import checked_cosine, checked_count, checked_length
 from fogproof.analytic.multiple.slab import slab_reflectance, slab_transmittance
 from fogproof.analytic.multiple.slab_modes import SOURCE, quadrature
 from fogproof.analytic.multiple.slab_solution import Leaving, leaving_slab
+from fogproof.analytic.phase.functions import phase_legendre_moments
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError
-from fogproof.scene.phase_functions import Isotropic, PhaseFunction
+from fogproof.scene.phase import Isotropic, PhaseFunction
 
 FEWEST_NODES, MOST_NODES = 14, 32
 """Half the number of nodes: complex modes cost more than real ones."""
@@ -47,7 +47,8 @@ def _orders(tau: Any, mu0: Any, count: Any, phase: Any, pick: Callable[[Leaving]
     if b.ndim:
         raise InvalidValueError("tau", "must be a single number", tau)
     mu0 = checked_cosine("mu0", mu0)
-    chi = legendre_moments(phase or Isotropic(), 2 * MOST_NODES)
+    moments = phase_legendre_moments(phase or Isotropic(), 2 * MOST_NODES)
+    chi = moments.value
     n = int(np.clip(1 + np.flatnonzero(np.abs(chi) > NEGLIGIBLE)[-1] // 2, FEWEST_NODES, MOST_NODES))
     nodes = quadrature(min(float(b), 10 * float(np.min(mu0, initial=1.0))), n)
 
@@ -58,6 +59,10 @@ def _orders(tau: Any, mu0: Any, count: Any, phase: Any, pick: Callable[[Leaving]
     def solution(albedos: np.ndarray) -> np.ndarray:
         return np.stack([at(c) for c in albedos], axis=-1).reshape(*mu0.shape, -1)
 
-    return taylor_coefficients(
+    orders = taylor_coefficients(
         solution, checked_count("count", count), known=lambda c: real(c, b, mu0, phase), source=SOURCE
     )
+    # Each collision is off by the integral of the error of the phase function, at most the root of the sum (Parseval).
+    change = np.sqrt((2 * np.arange(2 * n) + 1) @ moments.error[: 2 * n] ** 2)
+    error = orders.error + change * np.arange(orders.error.shape[-1])
+    return Reference(orders.value, error, orders.method, orders.source)

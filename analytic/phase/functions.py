@@ -8,53 +8,24 @@ what a parametrisation leaves over (a table, weights, a Lorenz-Mie series) is di
 from __future__ import annotations
 
 from collections.abc import Callable
-from fractions import Fraction
-from types import ModuleType
 from typing import Any
 
 import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS
-from fogproof.analytic.phase import draine as phase_draine
-from fogproof.analytic.phase import henyey_greenstein as phase_henyey_greenstein
-from fogproof.analytic.phase import isotropic as phase_isotropic
-from fogproof.analytic.phase import lobes as phase_lobes
-from fogproof.analytic.phase import mie as phase_mie
-from fogproof.analytic.phase import rayleigh as phase_rayleigh
-from fogproof.analytic.phase import schlick as phase_schlick
-from fogproof.analytic.phase import tabulated as phase_tabulated
 from fogproof.analytic.phase.inverse import inverse_cdf
+from fogproof.analytic.phase.kinds import ROOM, Parts, formula, weighted_parts
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError
-from fogproof.scene import phase_functions as scene
-from fogproof.scene.phase_functions import PhaseFunction
+from fogproof.scene.kinds import given, module_of
+from fogproof.scene.phase import PhaseFunction
 from fogproof.validate import as_float_array, require
-
-Parts = list[tuple[Fraction, PhaseFunction]]
 
 BLOCK = 8192
 """Elements evaluated at a time: the temporaries of a Lorenz-Mie series of them stay in the cache."""
 
 COSINE_SLOP = 8 * EPS
 """How far beyond [-1, 1] a cosine may lie: a dot product of two unit vectors rounds to as much as 1 + 2 eps or so."""
-
-FORMULAS: dict[type, ModuleType] = {
-    scene.Isotropic: phase_isotropic,
-    scene.HenyeyGreenstein: phase_henyey_greenstein,
-    scene.Schlick: phase_schlick,
-    scene.Hazy: phase_lobes,
-    scene.Murky: phase_lobes,
-    scene.Rayleigh: phase_rayleigh,
-    scene.CornetteShanks: phase_draine,
-    scene.Draine: phase_draine,
-    scene.Mie: phase_mie,
-    scene.Tabulated: phase_tabulated,
-}
-"""The module with the formulas of each simple kind; the others are weighted means of these.
-
-Each has SOURCE, METHOD, `pdf(phase, mu)`, `cdf(phase, mu)` and `mean_cosine(phase)`, and, where there
-is a closed form, `quantile(phase, xi)`; all return (value, error).
-"""
 
 
 def phase_pdf(phase: PhaseFunction, mu: Any) -> Reference:
@@ -66,7 +37,7 @@ def phase_pdf(phase: PhaseFunction, mu: Any) -> Reference:
     The result has the shape of mu. Closed forms have a relative error of a few eps for every parameter allowed.
     """
     parts = weighted_parts(phase)
-    return _reference(parts, _method(parts), *_in_blocks(lambda x: _sum(parts, "pdf", x), _cosines(mu)))
+    return _reference(parts, _method(parts, "pdf"), *_in_blocks(lambda x: _sum(parts, "pdf", x), _cosines(mu)))
 
 
 def phase_cdf(phase: PhaseFunction, mu: Any) -> Reference:
@@ -79,7 +50,7 @@ def phase_cdf(phase: PhaseFunction, mu: Any) -> Reference:
     has an absolute one.
     """
     parts = weighted_parts(phase)
-    return _reference(parts, _method(parts), *_in_blocks(lambda x: _sum(parts, "cdf", x), _cosines(mu)))
+    return _reference(parts, _method(parts, "cdf"), *_in_blocks(lambda x: _sum(parts, "cdf", x), _cosines(mu)))
 
 
 def phase_quantile(phase: PhaseFunction, xi: Any) -> Reference:
@@ -94,44 +65,48 @@ def phase_quantile(phase: PhaseFunction, xi: Any) -> Reference:
     xi = as_float_array("xi", xi)
     require("xi", xi, (xi >= 0) & (xi <= 1), "must be a probability in [0, 1]")
     parts = weighted_parts(phase)
-    formulas = FORMULAS[type(parts[0][1])]
-    if len(parts) == 1 and hasattr(formulas, "quantile"):
-        simple = parts[0][1]
-        return _reference(parts, "closed form", *_in_blocks(lambda x: formulas.quantile(simple, x), xi))
+    simple = parts[0][1]
+    quantile = given(simple, ROOM, "quantile")
+    if len(parts) == 1 and quantile is not None:
+        return _reference(parts, "closed form", *_in_blocks(lambda x: quantile(simple, x), xi))
     value, error = _in_blocks(lambda x: inverse_cdf(lambda mu: _sum(parts, "cdf", mu), x), xi)
-    return _reference(parts, f"root of the cdf ({_method(parts)})", value, error)
+    return _reference(parts, f"root of the cdf ({_method(parts, 'cdf')})", value, error)
 
 
 def phase_mean_cosine(phase: PhaseFunction) -> Reference:
     """Return g = 2 pi int_-1^1 f_p(mu) mu dmu, the mean forward cosine, of shape ()."""
     parts = weighted_parts(phase)
-    return _reference(parts, _method(parts), *_sum(parts, "mean_cosine"))
+    return _reference(parts, _method(parts, "mean_cosine"), *_sum(parts, "mean_cosine"))
 
 
-def weighted_parts(phase: PhaseFunction) -> Parts:
-    """Return a phase function as (weight, simple phase function) pairs; the weights are exact, positive, and sum to 1."""
-    match phase:
-        case scene.DoubleHenyeyGreenstein(g1, g2, weight):
-            w = Fraction(weight)
-            parts: Parts = [(w, scene.HenyeyGreenstein(g1)), (1 - w, scene.HenyeyGreenstein(g2))]
-        case scene.Mixture(components, weights):
-            total = sum(map(Fraction, weights))
-            parts = [
-                (Fraction(outer) / total * inner, part)
-                for outer, component in zip(weights, components, strict=True)
-                for inner, part in weighted_parts(component)
-            ]
-        case _ if type(phase) in FORMULAS:
-            return [(Fraction(1), phase)]
-        case _:
-            known = ", ".join(kind.__name__ for kind in scene.PHASE_FUNCTIONS.values())
-            raise InvalidValueError("phase", "must be a phase function", phase, f"one of {known}")
-    return [(weight, part) for weight, part in parts if weight]
+def phase_legendre_moments(phase: PhaseFunction, count: int) -> Reference:
+    """Return chi_l = 2 pi int_-1^1 f_p(mu) P_l(mu) dmu for l = 0 … count, of shape (count + 1,).
+
+    phase  a phase function of the scene description
+    count  the highest order l, a whole number >= 0
+
+    chi_0 is 1, chi_1 the mean cosine, and f_p = sum_l (2 l + 1)/(4 pi) chi_l P_l(mu). Closed forms and tables have errors of
+    a few l eps; elsewhere the error is estimated, and what the nodes of the quadrature miss of the integral of f_p counts.
+    """
+    if isinstance(count, bool) or not isinstance(count, int | np.integer) or count < 0:
+        raise InvalidValueError("count", "must be a whole number >= 0", count)
+    parts = weighted_parts(phase)
+    value, error = (np.array(x) for x in _sum(parts, "legendre_moments", int(count)))
+    value[0], error[0] = 1.0, 0.0
+    return _reference(parts, _method(parts, "legendre_moments"), value, error)
 
 
-def _sum(parts: Parts, what: str, *mu: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def phase_density(phase: PhaseFunction, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return f_p [1/sr] where (1 - mu)/2 = x and (1 + mu)/2 = y, and its error; both are taken as exact.
+
+    Where a kind has no formula in x and y its pdf is taken at y - x, and what that rounds counts.
+    """
+    return _sum(weighted_parts(phase), "density", x, y)
+
+
+def _sum(parts: Parts, what: str, *arguments: Any) -> tuple[Any, Any]:
     """Return the weighted mean of one of the formulas, and its error."""
-    pairs = [getattr(FORMULAS[type(part)], what)(part, *mu) for _, part in parts]
+    pairs = [formula(part, what)(part, *arguments) for _, part in parts]
     if len(parts) == 1:
         return pairs[0]
     weights = [float(weight) for weight, _ in parts]
@@ -159,9 +134,19 @@ def _in_blocks(
 
 
 def _reference(parts: Parts, method: str, value: Any, error: Any) -> Reference:
-    source = "; ".join(dict.fromkeys(FORMULAS[type(part)].SOURCE for _, part in parts))
+    source = "; ".join(dict.fromkeys(_words(part, "SOURCE") for _, part in parts))
     return Reference(np.asarray(value), np.asarray(error), method, source)
 
 
-def _method(parts: Parts) -> str:
-    return ", ".join(dict.fromkeys(FORMULAS[type(part)].METHOD for _, part in parts))
+def _method(parts: Parts, what: str) -> str:
+    return ", ".join(
+        dict.fromkeys(
+            "quadrature of the pdf" if given(part, ROOM, what) is None else _words(part, "METHOD") for _, part in parts
+        )
+    )
+
+
+def _words(part: PhaseFunction, name: str) -> str:
+    """Return what the module of a kind says of itself."""
+    words: str = getattr(module_of(part, ROOM), name, "as given" if name == "SOURCE" else "pdf as given")
+    return words

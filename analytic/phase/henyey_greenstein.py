@@ -7,10 +7,14 @@ its relative accuracy for every |g| < 1 and every mu; the distribution and its i
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
+from fogproof.analytic.airlight.phase import AirlightPhase, Array
 from fogproof.analytic.arithmetic.error_free import EPS
-from fogproof.scene.phase_functions import HenyeyGreenstein
+from fogproof.analytic.proven.balls import flint, rational
+from fogproof.scene.phase import HenyeyGreenstein
 
 SOURCE = "Henyey & Greenstein 1941, Astrophys. J. 93, 70"
 METHOD = "closed form"
@@ -59,3 +63,40 @@ def quantile(phase: HenyeyGreenstein, xi: np.ndarray) -> tuple[np.ndarray, np.nd
 def mean_cosine(phase: HenyeyGreenstein) -> tuple[float, float]:
     """Return g, exactly."""
     return phase.g, 0.0
+
+
+def legendre_moments(phase: HenyeyGreenstein, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return g^l; relative error eps."""
+    value = phase.g ** np.arange(count + 1.0)
+    return value, EPS * np.abs(value)
+
+
+def airlight(phase: HenyeyGreenstein) -> AirlightPhase:
+    """Return (1 - g^2) / (1 + g^2 - 2 g mu)^(3/2), where 1 + g^2 - 2 g mu = ((1-g)^2 wt + (1+g)^2 w) / (w + wt)."""
+    g = phase.g
+    backward, forward, scale = (1 + g) ** 2, (1 - g) ** 2, (1 - g) * (1 + g)
+
+    def factor(w: Array, wt: Array) -> Array:
+        ratio = (w + wt) / (backward * w + forward * wt)
+        return ratio * np.sqrt(ratio) * scale
+
+    def slope(low: Array, high: Array) -> tuple[Array, Array]:
+        """F is D^-3, D the distance of the direction from the point g of the axis: a turn moves it by |g| at most."""
+        nearest = (1 - abs(g)) ** 2 + 2 * abs(g) * (1 - (high if g >= 0 else -low))
+        return 3 * abs(g) / np.sqrt(nearest), np.zeros_like(low)
+
+    least, most = (1 - abs(g)) / (1 + abs(g)) ** 2, (1 + abs(g)) / (1 - abs(g)) ** 2
+    return AirlightPhase(factor, least, most, 8.0, slope)
+
+
+def ball(phase: HenyeyGreenstein, mu: Any, analytic: bool) -> Any:
+    """Return 4 pi f, by the textbook formula."""
+    g = rational(phase.g)
+    distance = 1 + g * g - 2 * g * mu
+    return (1 - g * g) / (distance * flint().acb(distance).sqrt(analytic=analytic))
+
+
+def peak(phase: HenyeyGreenstein) -> Any:
+    """Return the greatest 4 pi f."""
+    size = abs(rational(phase.g))
+    return (1 + size) / (1 - size) ** 2

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
+from fogproof.analytic.airlight.phase import AirlightPhase, no_slope
 from fogproof.analytic.arithmetic.error_free import EPS
-from fogproof.scene.phase_functions import Isotropic
+from fogproof.scene.phase import Isotropic
 
 SOURCE = "uniform distribution on the sphere"
 METHOD = "closed form"
@@ -32,3 +35,23 @@ def quantile(_phase: Isotropic, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]
 def mean_cosine(_phase: Isotropic) -> tuple[float, float]:
     """Return 0, exactly."""
     return 0.0, 0.0
+
+
+def legendre_moments(_phase: Isotropic, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return 1, 0, 0 …, exactly."""
+    return np.eye(count + 1)[0], np.zeros(count + 1)
+
+
+def airlight(_phase: Isotropic) -> AirlightPhase:
+    """Return F = 1."""
+    return AirlightPhase(None, 1.0, 1.0, 0.0, no_slope)
+
+
+def ball(_phase: Isotropic, mu: Any, _analytic: bool) -> Any:
+    """Return 4 pi f = 1."""
+    return mu * 0 + 1
+
+
+def peak(_phase: Isotropic) -> int:
+    """Return the greatest 4 pi f."""
+    return 1

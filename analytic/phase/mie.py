@@ -19,9 +19,10 @@ from functools import lru_cache
 
 import numpy as np
 
+from fogproof.analytic.airlight.phase import AirlightPhase, Array
 from fogproof.analytic.arithmetic.error_free import EPS
 from fogproof.errors import NotInstalledError, UnsupportedError
-from fogproof.scene.phase_functions import Mie
+from fogproof.scene.phase import Mie
 
 SOURCE = "Bohren & Huffman 1983, ch. 4; Prahl, miepython"
 METHOD = "Lorenz-Mie series"
@@ -75,6 +76,31 @@ def mean_cosine(phase: Mie) -> tuple[float, float]:
     step = (a[:, :-1] * a[:, 1:].conj() + b[:, :-1] * b[:, 1:].conj()).real @ (n * (n + 2) / (n + 1))[:-1]
     values = 8 * np.pi * (same + step) / s.norm
     return float(values[0]), float(_spread(values)) + 4 * s.noise
+
+
+def airlight(phase: Mie) -> AirlightPhase:
+    """Return 4 pi f of the Lorenz-Mie series: a polynomial in mu, bounded and differentiated on a fine grid of angles."""
+    size = math.pi * phase.diameter * phase.medium_index / phase.wavelength
+    degree = 2 * math.ceil(size + 8 * size ** (1 / 3) + 5)
+    theta = np.linspace(0, np.pi, 8 * degree + 1)
+    F, noise = (4 * np.pi * x for x in pdf(phase, np.cos(theta)))
+    # Between samples 8 times denser than the polynomial oscillates, neither F nor its slope grows by more than a tenth.
+    steep = 1.1 * np.abs(np.diff(F)) / np.diff(theta)
+    upto, beyond = np.maximum.accumulate(steep), np.maximum.accumulate(steep[::-1])[::-1]
+
+    def factor(w: Array, wt: Array) -> tuple[Array, Array]:
+        mu = (wt - w) / (wt + w)
+        value, error = pdf(phase, mu.ravel())
+        blur = 4 * EPS * np.interp(np.arccos(mu), theta[1:], steep)
+        return 4 * np.pi * value.reshape(mu.shape), 4 * np.pi * error.reshape(mu.shape) + blur
+
+    def slope(low: Array, high: Array) -> tuple[Array, Array]:
+        """The smaller of the largest slopes up to the largest angle and beyond the smallest."""
+        first, last = (np.clip((np.arccos(mu) / theta[1]).astype(int), 0, len(steep) - 1) for mu in (high, low))
+        return np.zeros_like(low), np.minimum(upto[last], beyond[first])
+
+    floor = max(0.0, 0.5 * float(np.min(F - noise)))
+    return AirlightPhase(factor, floor, 1.1 * float(F.max()), 2.0, slope, 0.0, degree, noisy=True)
 
 
 @lru_cache(maxsize=64)

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
+from fogproof.analytic.airlight.phase import AirlightPhase
 from fogproof.analytic.arithmetic.error_free import EPS
-from fogproof.scene.phase_functions import Rayleigh
+from fogproof.analytic.phase import draine
+from fogproof.scene.phase import Rayleigh
 
 SOURCE = "Rayleigh 1871, Phil. Mag. 41, 107"
 METHOD = "closed form"
@@ -32,3 +36,24 @@ def quantile(_phase: Rayleigh, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def mean_cosine(_phase: Rayleigh) -> tuple[float, float]:
     """Return 0, exactly."""
     return 0.0, 0.0
+
+
+def legendre_moments(_phase: Rayleigh, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return 1, 0, 1/10, 0 …; relative error eps/2."""
+    value = np.pad([1.0, 0.0, 0.1], (0, max(count - 2, 0)))[: count + 1]
+    return value, np.where(np.arange(count + 1) == 2, 0.5 * EPS * value, 0.0)
+
+
+def airlight(_phase: Rayleigh) -> AirlightPhase:
+    """Return 3/4 (1 + mu^2), which is Draine's function with g = 0 and alpha = 1."""
+    return draine.airlight_form(0.0, 1.0)
+
+
+def ball(_phase: Rayleigh, mu: Any, _analytic: bool) -> Any:
+    """Return 4 pi f."""
+    return 3 * (1 + mu * mu) / 4
+
+
+def peak(_phase: Rayleigh) -> int:
+    """Return an upper bound of 4 pi f, 3/2."""
+    return 2

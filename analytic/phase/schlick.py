@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
+from fogproof.analytic.airlight.phase import AirlightPhase, Array
 from fogproof.analytic.arithmetic.error_free import EPS
-from fogproof.scene.phase_functions import Schlick
+from fogproof.analytic.proven.balls import rational
+from fogproof.scene.phase import Schlick
 
 SOURCE = "Blasi, Le Saec & Schlick 1993, Comput. Graph. Forum 12(3), 201"
 METHOD = "closed form"
@@ -55,3 +58,30 @@ def mean_cosine(phase: Schlick) -> tuple[float, float]:
         return value, 3 * EPS * abs(value)
     tail = (1 - k) * (1 + k) * math.atanh(k)
     return (k - tail) / k**2, EPS * (2 * abs(k - tail) + 4 * abs(tail)) / k**2
+
+
+def airlight(phase: Schlick) -> AirlightPhase:
+    """Return (1 - k^2) / (1 - k mu)^2, where 1 - k mu = ((1+k) w + (1-k) wt) / (w + wt)."""
+    k = phase.k
+    scale = (1 - k) * (1 + k)
+
+    def factor(w: Array, wt: Array) -> Array:
+        ratio = (w + wt) / ((1 + k) * w + (1 - k) * wt)
+        return ratio * ratio * scale
+
+    def slope(low: Array, _high: Array) -> tuple[Array, Array]:
+        return np.full_like(low, 2 * abs(k) / math.sqrt(scale)), np.zeros_like(low)
+
+    return AirlightPhase(factor, (1 - abs(k)) / (1 + abs(k)), (1 + abs(k)) / (1 - abs(k)), 8.0, slope)
+
+
+def ball(phase: Schlick, mu: Any, _analytic: bool) -> Any:
+    """Return 4 pi f, by the textbook formula."""
+    k = rational(phase.k)
+    return (1 - k * k) / (1 - k * mu) ** 2
+
+
+def peak(phase: Schlick) -> Any:
+    """Return the greatest 4 pi f."""
+    size = abs(rational(phase.k))
+    return (1 + size) / (1 - size)

@@ -12,7 +12,7 @@ from fogproof.analytic.phase.functions import phase_pdf
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError
 from fogproof.scene import Ramp, VaryingPhase
-from fogproof.scene.varying_phase import AnyPhase
+from fogproof.scene.phase import AnyPhase
 from fogproof.validate import as_float_array, points, require
 
 

@@ -12,22 +12,12 @@ from typing import Any
 
 import numpy as np
 
+from fogproof.analytic.phase.kinds import ROOM, weighted_parts
 from fogproof.analytic.proven.balls import Ball, flint, proven, rational, reference
 from fogproof.contracts import Reference
-from fogproof.errors import UnsupportedError
-from fogproof.scene.phase_functions import (
-    CornetteShanks,
-    DoubleHenyeyGreenstein,
-    Draine,
-    Hazy,
-    HenyeyGreenstein,
-    Isotropic,
-    Mixture,
-    Murky,
-    PhaseFunction,
-    Rayleigh,
-    Schlick,
-)
+from fogproof.errors import UnsupportedError, shorten
+from fogproof.scene.kinds import given
+from fogproof.scene.phase import PhaseFunction
 
 SOURCE = "Johansson 2018, Numerical integration in arbitrary-precision ball arithmetic"
 
@@ -55,53 +45,24 @@ def airlight_ball(sigma_t: float, h: float, a: float, b: float, phase: PhaseFunc
 
 def factor(phase: PhaseFunction, mu: Any, analytic: bool = False) -> Any:
     """Return 4 pi f_p at a complex ball mu of forward cosines, by the textbook formulas."""
-    match phase:
-        case Isotropic():
-            return mu * 0 + 1
-        case HenyeyGreenstein(g):
-            return _draine(rational(g), flint().fmpq(0), mu, analytic)
-        case CornetteShanks(g):
-            return _draine(rational(g), flint().fmpq(1), mu, analytic)
-        case Draine(g, alpha):
-            return _draine(rational(g), rational(alpha), mu, analytic)
-        case Rayleigh():
-            return 3 * (1 + mu * mu) / 4
-        case Schlick(k):
-            exact = rational(k)
-            return (1 - exact * exact) / (1 - exact * mu) ** 2
-        case Hazy():
-            return (1 + 9 * ((1 + mu) / 2) ** 8) / 2
-        case Murky():
-            return (1 + 33 * ((1 + mu) / 2) ** 32) / 2
-        case DoubleHenyeyGreenstein(g1, g2, weight):
-            first, second = (factor(HenyeyGreenstein(g), mu, analytic) for g in (g1, g2))
-            return rational(weight) * first + (1 - rational(weight)) * second
-        case Mixture(components, weights):
-            exact_weights = [rational(w) for w in weights]
-            parts = zip(exact_weights, components, strict=True)
-            total = sum((w * factor(part, mu, analytic) for w, part in parts), mu * 0)
-            return total / sum(exact_weights, flint().fmpq(0))
-    raise UnsupportedError(f"nothing is proven for the phase function {phase!r}: ask without rigorous=True", "phase")
+    return _mean(phase, "ball", mu, analytic)
 
 
 def peak(phase: PhaseFunction) -> Any:
     """Return an upper bound of 4 pi f_p."""
-    match phase:
-        case HenyeyGreenstein(g) | CornetteShanks(g) | Draine(g, _) | Schlick(g):
-            size = abs(rational(g))
-            extra = 1 + rational(phase.alpha) if isinstance(phase, Draine) else 2
-            return extra * (1 + size) / (1 - size) ** 2
-        case DoubleHenyeyGreenstein(g1, g2, _):
-            return peak(HenyeyGreenstein(g1)) + peak(HenyeyGreenstein(g2))
-        case Mixture(components, _):
-            return sum((peak(part) for part in components), flint().fmpq(0))
-    return flint().fmpq(17)
+    return _mean(phase, "peak")
 
 
-def _draine(g: Any, alpha: Any, mu: Any, analytic: bool) -> Any:
-    distance = 1 + g * g - 2 * g * mu
-    lobe = (1 - g * g) / (distance * flint().acb(distance).sqrt(analytic=analytic))
-    return lobe * (1 + alpha * mu * mu) / (1 + alpha * (1 + 2 * g * g) / 3)
+def _mean(phase: PhaseFunction, name: str, *arguments: Any) -> Any:
+    total = flint().fmpq(0)
+    for weight, part in weighted_parts(phase):
+        known = given(part, ROOM, name)
+        if known is None:
+            raise UnsupportedError(
+                f"nothing is proven for the phase function {shorten(part)}: ask without rigorous=True", "phase"
+            )
+        total = total + flint().fmpq(weight.numerator, weight.denominator) * known(part, *arguments)
+    return total
 
 
 def _beside(sigma: Any, h: Any, a: Any, b: Any, phase: PhaseFunction) -> Ball:

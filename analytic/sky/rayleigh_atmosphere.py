@@ -10,7 +10,7 @@ from fogproof.analytic.arithmetic.error_free import ELEMENTARY, EPS, TINY
 from fogproof.analytic.phase.functions import phase_pdf
 from fogproof.analytic.rays.compositing import phi1
 from fogproof.contracts import Reference
-from fogproof.scene.phase_functions import Rayleigh
+from fogproof.scene.phase import Rayleigh
 from fogproof.validate import as_float_array, require
 
 DENSITY = 101325 / (1.380649e-23 * 288.15)

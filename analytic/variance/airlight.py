@@ -26,7 +26,7 @@ from fogproof.analytic.arithmetic.gauss_legendre import NODES, WEIGHTS
 from fogproof.analytic.rays.compositing import phi1
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError, UnsupportedError
-from fogproof.scene.phase_functions import Isotropic, PhaseFunction
+from fogproof.scene.phase import Isotropic, PhaseFunction
 from fogproof.validate import as_float_array, require
 
 Sampling = Literal["equiangular", "free-path", "distance", "uniform"]

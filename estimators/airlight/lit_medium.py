@@ -18,8 +18,9 @@ from fogproof.estimators.free_paths.extinction import Extinction, along
 from fogproof.estimators.free_paths.fog import everywhere
 from fogproof.estimators.phase.functions import phase_value
 from fogproof.scene import AnyMedium, Medium, PhaseFunction, Ray
-from fogproof.scene.lights import Environment, Light
+from fogproof.scene.lights import Light
 from fogproof.scene.occluders import Occluder
+from fogproof.scene.phase import constant_phase
 from fogproof.scene.shapes import Shape, Unbounded
 
 
@@ -82,9 +83,10 @@ class LitMedium:
     @property
     def phase(self) -> PhaseFunction:
         """The medium's phase function, the same everywhere."""
-        if isinstance(self.medium.phase, PhaseFunction):
-            return self.medium.phase
-        raise UnsupportedError("the phase function must be the same everywhere", "medium.phase")
+        phase = constant_phase(self.medium.phase)
+        if phase is None:
+            raise UnsupportedError("the phase function must be the same everywhere", "medium.phase")
+        return phase
 
     @cached_property
     def _illumination(self) -> Callable[[np.ndarray], Illumination]:
@@ -103,7 +105,6 @@ class LitMedium:
 
         It is exact, or an unbiased estimate if the shadow rays are tracked.
         """
-        assert not isinstance(self.light, Environment)
         mu, distance, irradiance = self._illumination(self.start + t)
         value = self.albedo * self.extinction.sigma(t) * phase_value(self.phase, mu) * irradiance
         plain = isinstance(self.medium, Medium) and isinstance(self.shape, Unbounded) and self.shadow_rays == "exact"

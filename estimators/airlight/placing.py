@@ -11,10 +11,9 @@ from fogproof.contracts import Draw
 from fogproof.domains import HalfLine, Interval
 from fogproof.errors import InvalidValueError, UnsupportedError
 from fogproof.estimators.airlight.equiangular import Equiangular
-from fogproof.estimators.airlight.lighting import foot
+from fogproof.estimators.airlight.lighting import focus, foot
 from fogproof.estimators.airlight.lit_medium import LitMedium
 from fogproof.estimators.free_paths.free_path import FreePath, TruncatedFreePath
-from fogproof.scene.lights import PointLight, SpotLight
 from fogproof.validate import number
 
 Placing = Literal["equiangular", "free-path", "distance", "uniform", "mixed"]
@@ -110,9 +109,10 @@ def placer(lit: LitMedium, placing: Placing) -> Placer:
     """Return the sampler of one scattering event on the segment of a lit medium, which must not be empty."""
     match placing:
         case "equiangular":
-            if not isinstance(lit.light, PointLight | SpotLight):
+            point = focus(lit.light)
+            if point is None:
                 raise UnsupportedError("equiangular sampling needs a light at a point", "light")
-            h, along = foot(lit.ray, lit.light.position)
+            h, along = foot(lit.ray, point)
             a = lit.start - along
             return Shifted(Equiangular(h, a, a + lit.length))
         case "free-path":

@@ -10,12 +10,13 @@ import numpy as np
 
 from fogproof.contracts import Draws
 from fogproof.errors import UnsupportedError
+from fogproof.estimators.airlight.lighting import one_direction_a_point
 from fogproof.estimators.airlight.lit_medium import LitMedium
 from fogproof.estimators.airlight.placing import Placer, Placing, placer
 from fogproof.estimators.airlight.shadow_rays import ShadowRays
 from fogproof.estimators.blocks import blocks
 from fogproof.scene import AnyMedium, Ray
-from fogproof.scene.lights import DirectionalLight, Light, PointLight, SpotLight
+from fogproof.scene.lights import Light
 from fogproof.scene.occluders import Occluder
 from fogproof.scene.shapes import Shape, Unbounded
 
@@ -39,7 +40,7 @@ class Airlight:
     shadow_rays: ShadowRays = "exact"
 
     def __post_init__(self) -> None:
-        if not isinstance(self.light, PointLight | SpotLight | DirectionalLight):
+        if not one_direction_a_point(self.light):
             raise UnsupportedError("Airlight needs a light with a direction; see EnvironmentAirlight", "light")
 
     @cached_property

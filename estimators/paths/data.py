@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from fogproof.errors import UnsupportedError
-from fogproof.estimators.grey import grey
 from fogproof.estimators.kernels import path_data as data
 from fogproof.estimators.kernels.data import BlockBound, Lattice, RayBound
 from fogproof.estimators.tracking.majorant_grid import MajorantGrid
@@ -25,27 +23,17 @@ from fogproof.scene import (
     Rayleigh,
     VoxelGrid,
 )
-from fogproof.scene.lights import DirectionalLight, Environment, Light, PointLight
-from fogproof.scene.shapes import Ball, Box, HalfSpace, Shape, Slab, Unbounded
-from fogproof.scene.surfaces import Plane, Surface
+from fogproof.scene.kinds import given
+from fogproof.scene.lights import Light
+from fogproof.scene.shapes import Shape
+from fogproof.scene.surfaces import Surface
 from fogproof.validate import number
 
 
 def region(shape: Shape) -> data.Region:
     """Return a shape for kernels."""
-    match shape:
-        case Unbounded():
-            return data.Region(data.SPACE, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-        case HalfSpace(point, normal):
-            return data.Region(data.LAYER, *normal, -np.inf, float(np.dot(normal, point)), 0.0)
-        case Slab(point, normal, thickness):
-            high = float(np.dot(normal, point))
-            return data.Region(data.LAYER, *normal, high - thickness, high, 0.0)
-        case Ball(center, radius):
-            return data.Region(data.BALL, *center, radius, 0.0, 0.0)
-        case Box(lower, upper):
-            return data.Region(data.BOX, *lower, *upper)
-    raise UnsupportedError(f"path tracing knows no {type(shape).__name__}", "shape")
+    made: data.Region = _given(shape, "shapes", "region", "shape")(shape)
+    return made
 
 
 def lobe(phase: Any) -> data.Lobe:
@@ -61,28 +49,12 @@ def lobe(phase: Any) -> data.Lobe:
     raise UnsupportedError(f"path tracing knows {known}, got {type(phase).__name__}", "medium.phase")
 
 
-def lamp(light: Any) -> data.Lamp:
+def lamp(light: Light | None) -> data.Lamp:
     """Return a light for kernels."""
-    match light:
-        case None:
-            return data.Lamp(data.DARK, 0.0, 0.0, 0.0, 0.0)
-        case PointLight(position, intensity):
-            return data.Lamp(data.POINT, *position, grey("intensity", intensity))
-        case DirectionalLight(direction, irradiance):
-            return data.Lamp(data.PARALLEL, *direction, grey("irradiance", irradiance))
-        case Environment(radiance):
-            return data.Lamp(data.SKY, 0.0, 0.0, 0.0, grey("radiance", radiance))
-    raise UnsupportedError(f"path tracing knows no {type(light).__name__}", "light")
-
-
-def unit_light(light: Light) -> Light:
-    """Return the same light with a strength of 1."""
-    match light:
-        case DirectionalLight():
-            return replace(light, irradiance=1.0)
-        case Environment():
-            return replace(light, radiance=1.0)
-    return replace(light, intensity=1.0)
+    if light is None:
+        return data.Lamp(data.DARK, 0.0, 0.0, 0.0, 0.0)
+    made: data.Lamp = _given(light, "lights", "lamp", "light")(light)
+    return made
 
 
 def wall(surface: Surface | None) -> data.Wall:
@@ -90,11 +62,16 @@ def wall(surface: Surface | None) -> data.Wall:
     if surface is None:
         return data.Wall(data.NOWHERE, 0.0, 0.0, 0.0, 0.0, data.LAMBERT, 0.0, 0.0)
     finish = data.MIRROR if surface.finish == "mirror" else data.LAMBERT
-    place = surface.place
-    if isinstance(place, Plane):
-        size = float(np.dot(place.normal, place.point))
-        return data.Wall(data.PLANE, *place.normal, size, finish, surface.albedo, surface.radiance)
-    return data.Wall(data.SPHERE, *place.center, place.radius, finish, surface.albedo, surface.radiance)
+    place: tuple[int, float, float, float, float] = _given(surface.place, "surfaces", "place", "surface")(surface.place)
+    return data.Wall(*place, finish, surface.albedo, surface.radiance)
+
+
+def _given(thing: Any, room: str, name: str, argument: str) -> Any:
+    """Return what the module of this kind gives to path tracing, or refuse the kind."""
+    made = given(thing, f"fogproof.estimators.{room}", name)
+    if made is None:
+        raise UnsupportedError(f"path tracing knows no {type(thing).__name__}", argument)
+    return made
 
 
 def medium_and_bound(
@@ -147,12 +124,9 @@ def _extremes(vector: np.ndarray, shape: Shape) -> np.ndarray:
     length = float(np.linalg.norm(vector))
     if length == 0:
         return np.zeros((1, 3))
-    match shape:
-        case Ball(center, radius):
-            return np.array([center]) + radius * vector / length
-        case Box(lower, upper):
-            return np.where(vector > 0, upper, lower)[None]
-        case Slab(point, normal, thickness) if np.allclose(np.cross(vector, normal), 0, atol=1e-12 * length):
-            return np.array([point, np.subtract(point, np.multiply(thickness, normal))])
+    farthest = given(shape, "fogproof.estimators.shapes", "farthest")
+    points = None if farthest is None else farthest(shape, vector)
+    if points is not None:
+        return np.asarray(points)
     fix = "give a majorant, or a shape in which it is bounded"
     raise UnsupportedError(f"the extinction is not bounded in this {type(shape).__name__}; {fix}", "majorant")

@@ -16,7 +16,8 @@ from fogproof.estimators.paths import data as path_data
 from fogproof.estimators.paths.tracer import ENDLESS, trace, whole
 from fogproof.estimators.tracking.majorant_grid import MajorantGrid
 from fogproof.scene import AnyMedium, Isotropic, Medium, PhaseFunction
-from fogproof.scene.shapes import Ball, Box, Shape, Slab
+from fogproof.scene.kinds import given
+from fogproof.scene.shapes import Shape
 from fogproof.validate import number
 
 
@@ -122,25 +123,11 @@ class ScatteringsUnderUniformSky:
 
 def entrances(shape: Shape, rng: np.random.Generator, n: int) -> tuple[np.ndarray, np.ndarray]:
     """Return points uniform on the boundary of a shape and the normals out of it there, (n, 3) each."""
-    match shape:
-        case Ball(center, radius):
-            normal = rng.standard_normal((n, 3))
-            normal /= np.linalg.norm(normal, axis=1, keepdims=True)
-            return np.array(center) + radius * normal, normal
-        case Slab(point, normal):  # both faces and all places on them are alike
-            return np.tile(np.array(point), (n, 1)), np.tile(np.array(normal), (n, 1))
-        case Box(lower, upper):
-            low, high = np.array(lower), np.array(upper)
-            sides = high - low
-            area = np.prod(sides) / sides
-            axis = rng.choice(3, n, p=area / area.sum())
-            side = rng.integers(0, 2, n)
-            point, normal = low + rng.random((n, 3)) * sides, np.zeros((n, 3))
-            rows = np.arange(n)
-            point[rows, axis] = np.where(side == 1, high[axis], low[axis])
-            normal[rows, axis] = 2 * side - 1
-            return point, normal
-    raise UnsupportedError(f"rays enter a slab, a ball or a box, got {type(shape).__name__}", "shape")
+    draw = given(shape, "fogproof.estimators.shapes", "entrances")
+    if draw is None:
+        raise UnsupportedError(f"rays enter a slab, a ball or a box, got {type(shape).__name__}", "shape")
+    point, normal = draw(shape, rng, n)
+    return point, normal
 
 
 def _inwards(normal: np.ndarray, rng: np.random.Generator) -> np.ndarray:

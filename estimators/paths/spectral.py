@@ -16,7 +16,7 @@ from fogproof.estimators.paths.tracer import ENDLESS, Gathering, Paths, Roulette
 from fogproof.estimators.tracking.majorant_grid import MajorantGrid
 from fogproof.estimators.tracking.tracked import single
 from fogproof.scene import AnyMedium, Ray
-from fogproof.scene.lights import Light, strength
+from fogproof.scene.lights import Light, strength, with_strength
 from fogproof.scene.shapes import Shape
 from fogproof.scene.surfaces import Surface
 from fogproof.validate import channel_count
@@ -62,7 +62,7 @@ class SpectralPathTracer:
         lobe, wall = path_data.lobe(self.medium.phase), path_data.wall(self.surface)
         albedo, emission = (self._constant(name) for name in ("albedo", "emission"))
         colour = np.array(np.broadcast_to(0.0 if self.light is None else strength(self.light), self.channels))
-        lamp = path_data.lamp(None if self.light is None else path_data.unit_light(self.light))
+        lamp = path_data.lamp(None if self.light is None else with_strength(self.light, 1.0))
         medium, bound = path_data.medium_and_bound(self.medium, self.shape, self.majorant, self.channels)
         return medium, bound, path_data.region(self.shape), lobe, lamp, wall, plan, albedo, emission, colour
 

@@ -21,7 +21,7 @@ from fogproof.estimators.paths import data as path_data
 from fogproof.estimators.tracking.majorant_grid import MajorantGrid
 from fogproof.estimators.tracking.tracked import refuse, single
 from fogproof.scene import AnyMedium, Ray
-from fogproof.scene.lights import DirectionalLight, Light, PointLight
+from fogproof.scene.lights import Light
 from fogproof.scene.shapes import Shape
 from fogproof.scene.surfaces import Surface
 from fogproof.validate import number
@@ -178,7 +178,7 @@ def choose_gathering(
     if gathering not in (None, *get_args(Gathering)):
         raise InvalidValueError("gathering", f"must be one of {', '.join(get_args(Gathering))}", gathering)
     refracts = refractive_index != 1
-    if isinstance(light, PointLight | DirectionalLight):
+    if light is not None and light.delta:
         if gathering not in (None, "looked for"):
             raise InvalidValueError("gathering", "must be 'looked for': paths never meet such a light", gathering)
         if refracts or (surface is not None and surface.finish == "mirror" and surface.albedo > 0):

@@ -19,7 +19,7 @@ _MOST_STEPS = 64  # far fewer are taken but where alpha is huge and mu nearly 0,
 
 def _parameters(phase: Draine | CornetteShanks) -> tuple[float, float, float]:
     """Return g and the weights c0, c1 of 1 and mu^2 in the density of w."""
-    alpha = phase.alpha if isinstance(phase, Draine) else 1.0
+    alpha = phase.alpha
     norm = 1 + alpha * (1 + 2 * phase.g**2) / 3
     return phase.g, 1 / norm, alpha / norm
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from fogproof.estimators.kernels.path_data import HENYEY_GREENSTEIN, ISOTROPIC, Lobe
 from fogproof.estimators.phase.polar import Polar
 from fogproof.scene import HenyeyGreenstein
 
@@ -60,3 +61,8 @@ def polar(phase: HenyeyGreenstein, xi: np.ndarray) -> Polar:
     d2 *= d
     d2 /= 4 * np.pi * ((1 - k) * (1 + k)) ** 2
     return Polar(from_peak, from_antipode, d2) if phase.g >= 0 else Polar(from_antipode, from_peak, d2)
+
+
+def lobe(phase: HenyeyGreenstein) -> Lobe:
+    """Return it for compiled kernels."""
+    return Lobe(HENYEY_GREENSTEIN if phase.g != 0 else ISOTROPIC, phase.g)

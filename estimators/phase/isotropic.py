@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from fogproof.estimators.kernels.path_data import ISOTROPIC, Lobe
 from fogproof.estimators.phase.polar import Polar
 from fogproof.scene import Isotropic
 
@@ -22,3 +23,8 @@ def cosines(phase: Isotropic, xi: np.ndarray, out: np.ndarray) -> None:
 def polar(phase: Isotropic, xi: np.ndarray) -> Polar:
     """Return scattering angles and their pdf."""
     return Polar(2 * (1 - xi), 2 * xi, np.full_like(xi, 0.25 / np.pi))
+
+
+def lobe(_phase: Isotropic) -> Lobe:
+    """Return it for compiled kernels."""
+    return Lobe(ISOTROPIC, 0.0)

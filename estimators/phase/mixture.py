@@ -1,42 +1,17 @@
-"""Weighted means of phase functions: a component is chosen by its weight, but the pdf is the weighted sum of all."""
+"""A weighted mean of phase functions; `weighted` draws from it."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from types import ModuleType
-from typing import Any
-
-import numpy as np
-
-from fogproof.estimators.phase.polar import Polar
-
-Part = tuple[float, ModuleType, Any]
-"""Weight, formulas and parameters of a component; the weights sum to 1."""
+from fogproof.estimators.phase.functions import phase_table
+from fogproof.scene.phase import Mixture, PhaseFunction
 
 
-def density(parts: Sequence[Part], versine: np.ndarray, coversine: np.ndarray) -> np.ndarray:
-    """Return the phase function [1/sr]."""
-    total = np.zeros_like(versine)
-    for weight, formulas, phase in parts:
-        total += weight * formulas.density(phase, versine, coversine)
-    return total
+def parts(phase: Mixture) -> list[tuple[float, PhaseFunction]]:
+    """Return the components and their weights."""
+    total = sum(phase.weights)
+    return [(weight / total, part) for weight, part in zip(phase.weights, phase.components, strict=True)]
 
 
-def polar(parts: Sequence[Part], xi: np.ndarray) -> Polar:
-    """Return scattering angles and their pdf.
-
-    What is left of xi in the share that chose the component is uniform again; rounding must not carry it out of [0, 1).
-    """
-    ends = np.cumsum([weight for weight, *_ in parts])
-    ends /= ends[-1]
-    chosen = np.minimum(np.searchsorted(ends, xi, side="right"), len(parts) - 1)
-    below_one = np.nextafter(np.ones((), xi.dtype), 0)
-    versine, coversine = np.empty_like(xi), np.empty_like(xi)
-    start = 0.0
-    for i, ((_, formulas, phase), end) in enumerate(zip(parts, ends.tolist(), strict=True)):
-        at = np.flatnonzero(chosen == i)
-        fresh = np.clip((xi[at] - start) / (end - start), 0, below_one) if len(at) else xi[at]
-        part = formulas.polar(phase, fresh.astype(xi.dtype, copy=False))
-        versine[at], coversine[at] = part.versine, part.coversine
-        start = end
-    return Polar(versine, coversine, density(parts, versine, coversine))
+def table(phase: Mixture) -> Mixture:
+    """Return the mixture of what the components are drawn from."""
+    return Mixture(tuple(phase_table(part) for part in phase.components), phase.weights)

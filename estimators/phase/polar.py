@@ -1,13 +1,4 @@
-"""The polar part of a scattered direction: what a phase function fixes; the azimuth is uniform for all of them.
-
-Every phase function here is a module with three functions of its parameters `phase`, in the precision of their arrays:
-
-    polar(phase, xi)                      (n,) uniforms in [0, 1) -> `Polar`
-    density(phase, versine, coversine)    (n,) -> (n,) [1/sr]
-    cosines(phase, xi, out)               (n,) uniforms -> the forward cosines mu alone, written to `out`
-
-`polar` and `cosines` invert the cdf of mu, where they do not choose between two lobes first.
-"""
+"""The polar part of a scattered direction: what a phase function fixes; the azimuth is uniform for all of them."""
 
 from __future__ import annotations
 

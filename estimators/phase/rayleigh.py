@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from fogproof.estimators.kernels.path_data import RAYLEIGH, Lobe
 from fogproof.estimators.phase.polar import Polar
 from fogproof.scene import Rayleigh
 
@@ -43,3 +44,8 @@ def polar(phase: Rayleigh, xi: np.ndarray) -> Polar:
     versine = 8 * (1 - xi) / (6 - versine * (3 - versine))
     coversine = 8 * xi / (6 - coversine * (3 - coversine))
     return Polar(versine, coversine, 3 / (16 * np.pi) * (1 + mu * mu))
+
+
+def lobe(_phase: Rayleigh) -> Lobe:
+    """Return it for compiled kernels."""
+    return Lobe(RAYLEIGH, 0.0)

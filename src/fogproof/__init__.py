@@ -10,12 +10,29 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 from fogproof.contracts import Draw, Draws, Estimator, Reference, Sampler
-from fogproof.domains import Discrete, HalfLine, Interval, RealLine, UnitDisk, UnitHemisphere, UnitSphere, UnitSquare
+from fogproof.domains import (
+    Ball,
+    Box,
+    Discrete,
+    HalfLine,
+    Interval,
+    Product,
+    RealLine,
+    Rectangle,
+    Rotations,
+    SpherePart,
+    SphericalTriangle,
+    Triangle,
+    UnitDisk,
+    UnitHemisphere,
+    UnitSphere,
+    UnitSquare,
+)
 from fogproof.errors import FogproofError, InvalidValueError
 from fogproof.scene import HenyeyGreenstein, Isotropic, Medium, PointLight, Ray, Rayleigh, Scene
 
 if TYPE_CHECKING:
-    from fogproof.checks import Finding, Verdict, check_estimator, check_sampler
+    from fogproof.checks import Finding, Verdict, check_estimator, check_sampler, compare_estimators
     from fogproof.scene.files import read_scene
     from fogproof.scene.volume_files import read_voxel_grid
     from fogproof.scene_estimator import estimator_for
@@ -23,6 +40,8 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "Ball",
+    "Box",
     "Discrete",
     "Draw",
     "Draws",
@@ -36,12 +55,18 @@ __all__ = [
     "Isotropic",
     "Medium",
     "PointLight",
+    "Product",
     "Ray",
     "Rayleigh",
     "RealLine",
+    "Rectangle",
     "Reference",
+    "Rotations",
     "Sampler",
     "Scene",
+    "SpherePart",
+    "SphericalTriangle",
+    "Triangle",
     "UnitDisk",
     "UnitHemisphere",
     "UnitSphere",
@@ -49,6 +74,7 @@ __all__ = [
     "Verdict",
     "check_estimator",
     "check_sampler",
+    "compare_estimators",
     "estimator_for",
     "read_scene",
     "read_voxel_grid",
@@ -57,6 +83,7 @@ __all__ = [
 _LAZY = {
     "check_sampler": "fogproof.checks",
     "check_estimator": "fogproof.checks",
+    "compare_estimators": "fogproof.checks",
     "Verdict": "fogproof.checks",
     "Finding": "fogproof.checks",
     "estimator_for": "fogproof.scene_estimator",

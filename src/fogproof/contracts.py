@@ -9,19 +9,59 @@ from typing import Any, NamedTuple, Protocol, runtime_checkable
 import numpy as np
 
 from fogproof.domains import Domain
+from fogproof.errors import InvalidValueError
+from fogproof.validate import as_float_array, require
 
 
 @dataclass(frozen=True, eq=False)
 class Reference:
     """What the oracle says: `|value - truth| <= error`, element by element.
 
-    `method` names the algorithm, `source` the paper. Shapes broadcast; colour channels, if any, are the last axis.
+    value   a number or an array of them; colour channels, if any, are the last axis
+    error   a bound >= 0 on how far each is from the truth; broadcasts against `value`; inf says that nothing is known
+    method  names the algorithm
+    source  the paper
+
+    Entries of a table that are not there are NaN with an error of NaN. A plain number is a reference without error:
+
+    >>> float(Reference(0.5))
+    0.5
+    >>> Reference([0.25, 0.5], error=1e-9).error.shape
+    ()
     """
 
     value: np.ndarray
-    error: np.ndarray
-    method: str
-    source: str
+    error: np.ndarray = 0.0  # type: ignore[assignment]  # numbers are turned into arrays
+    method: str = ""
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        value, error = as_float_array("value", self.value), as_float_array("error", self.error)
+        try:
+            every, bound = np.broadcast_arrays(value, error)
+        except ValueError:
+            rule = f"must broadcast against value, of shape {value.shape}"
+            raise InvalidValueError("error", rule, list(error.shape)) from None
+        given = ~(np.isnan(every) & np.isnan(bound))
+        require("value", every, ~(np.isnan(every) & given), "must not be NaN", "a reference that is not known is none")
+        require("error", bound, (bound >= 0) | ~given, "must be >= 0", "it bounds |value - truth|")
+        object.__setattr__(self, "value", value)
+        object.__setattr__(self, "error", error)
+
+    def __float__(self) -> float:
+        if self.value.size != 1:
+            rule = "must hold a single number to become a float"
+            raise InvalidValueError("reference", rule, list(self.value.shape), "take reference.value")
+        return float(self.value.reshape(()))
+
+    @staticmethod
+    def of(name: str, value: Reference | float | Any) -> Reference:
+        """Return `value` if it is a `Reference`, else the reference whose exact value it is; `name` is for the error."""
+        if isinstance(value, Reference):
+            return value
+        array = as_float_array(name, value)
+        require(name, array, np.isfinite(array), "must be finite")
+        return Reference(array)
 
 
 class Draw(NamedTuple):

@@ -16,10 +16,12 @@ from fogproof.errors import FogproofError, InvalidInputError, UnsupportedError, 
 from fogproof.quantities import quantities
 from fogproof.scene import Medium
 from fogproof.scene.files import input_model, read_fields
-from fogproof.scene.lights import LIGHTS, PointLight
+from fogproof.scene.lights import KINDS as LIGHTS
+from fogproof.scene.lights import PointLight
 from fogproof.scene.media import MEDIA
-from fogproof.scene.occluders import OCCLUDERS
-from fogproof.scene.phase_functions import PHASE_FUNCTIONS
+from fogproof.scene.occluders import KINDS as OCCLUDERS
+from fogproof.scene.phase import KINDS as PHASE_FUNCTIONS
+from fogproof.scene.shapes import KINDS as SHAPES
 
 PROTOCOL = "fogproof/oracle/1"
 
@@ -41,6 +43,7 @@ def schema() -> dict[str, Any]:
         **MEDIA,
         **LIGHTS,
         **OCCLUDERS,
+        **SHAPES,
     }.items():  # the key that tells the types of a union apart
         if cls.__name__ in definitions:
             definition = definitions[cls.__name__]

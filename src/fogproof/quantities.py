@@ -18,7 +18,7 @@ from fogproof.scene.complex_numbers import ComplexNumber
 from fogproof.scene.lights import LightField
 from fogproof.scene.media import AnyMediumField
 from fogproof.scene.occluders import OccluderField
-from fogproof.scene.phase_functions import PhaseFunctionField
+from fogproof.scene.phase import PhaseFunctionField
 from fogproof.scene.shapes import ShapeField, Unbounded
 from fogproof.validate import Channels
 

@@ -107,3 +107,24 @@ def channel_count(**values: Channels) -> int | None:
             "give one number for grey, or equally many everywhere",
         )
     return next(iter(counts.values()), None)
+
+
+def one_point(name: str, value: object) -> tuple[float, float, float]:
+    """Return one finite point as a tuple."""
+    point = points(name, value)
+    if point.ndim != 1:
+        raise InvalidValueError(name, "must be one point [x, y, z]", value)
+    return tuple(point.tolist())
+
+
+def one_direction(name: str, value: object) -> tuple[float, float, float]:
+    """Return one unit vector as a tuple."""
+    vector = unit_vectors(name, value)
+    if vector.ndim != 1:
+        raise InvalidValueError(name, "must be one vector [x, y, z]", value)
+    return tuple(vector.tolist())
+
+
+def positive_length(name: str, value: Any) -> float:
+    """Return a finite length > 0 [m]."""
+    return number(name, value, "must be finite and > 0 [m]", 0, np.inf, open_ends=True)

@@ -67,7 +67,10 @@ class Result:
 
 
 def select(patterns: Iterable[str]) -> list[Case]:
-    """Return the cases whose name is one of the patterns, begins with one as a folder, or matches it as a glob; all for none."""
+    """Return the cases whose name is one of the patterns, begins with one as a folder, or matches it as a glob.
+
+    Without patterns: every case that does not ask to be named.
+    """
     patterns = list(patterns)
     cases = all_cases()
     chosen: dict[str, Case] = {}
@@ -79,7 +82,7 @@ def select(patterns: Iterable[str]) -> list[Case]:
             hint = f"did you mean {', '.join(close)}?" if close else "'fogproof list' shows all names"
             raise InvalidInputError(f"no case is called {pattern!r}; {hint}", pattern)
         chosen.update((c.name, c) for c in hits)
-    return [c for c in cases if c.name in chosen] if patterns else list(cases)
+    return [c for c in cases if (c.name in chosen if patterns else not c.by_name)]
 
 
 def run(cases: list[Case], *, seed: int, alpha: float, workers: int, twins: bool = False) -> Iterator[Result]:

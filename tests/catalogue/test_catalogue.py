@@ -16,7 +16,7 @@ from fogproof.verify import case_seed, run_case, select
 
 SEED = fresh_seed()
 ALPHA = 1e-9
-CASES = {case.name: case for case in all_cases()}
+CASES = {case.name: case for case in select([])}
 
 
 @pytest.fixture(params=CASES)
@@ -29,7 +29,9 @@ def case(request):
 
 def test_case_is_not_rejected(case):
     result = run_case(case, SEED, ALPHA)
-    assert result.status == "passed", f"{result.reason}{result.verdict} (run seed {SEED})"
+    assert result.status == ("passed" if case.expected == "not rejected" else "known"), (
+        f"{result.reason}{result.verdict} (run seed {SEED})"
+    )
 
 
 def test_broken_twin_is_rejected(case):
@@ -40,7 +42,7 @@ def test_broken_twin_is_rejected(case):
 
 
 def test_names_are_unique_and_every_case_is_documented():
-    assert len(CASES) == len(all_cases())
+    assert len({case.name for case in all_cases()}) == len(all_cases())
     for case in all_cases():
         for text in (case.title, case.source, case.oracle, case.twin.error):
             assert text.strip()
@@ -53,7 +55,8 @@ def test_every_sampler_on_the_sphere_declares_its_convention():
 
 
 def test_cases_are_chosen_by_name_folder_or_glob():
-    assert len(select([])) == len(all_cases())
+    assert select([]) == [case for case in all_cases() if not case.by_name]
+    assert all(select([case.name]) == [case] for case in all_cases() if case.by_name)
     assert all(c.name.startswith("directions/") for c in select(["directions"]))
     assert [c.name for c in select(["free-path/thin"])] == ["free-path/thin"]
     assert {c.name.split("/")[0] for c in select(["mitsuba/hg*"])} == {"mitsuba"}

@@ -165,8 +165,8 @@ SEEN = {
         "repeated points", "atom"),
     "a claimed hole": (
         "interval", {"pdf": lambda x: np.where(np.abs(x - 3) < 1e-3, 0, 1 / (3 - 2e-3))}, "positive pdf", "claimed hole"),
-    "sorted samples": ("interval", {"sample": lambda u: 2 + 3 * np.sort(u[:, 0])}, "serial correlation", "dependent samples"),
-    "one azimuth a batch": ("sphere", {"sample": one_azimuth}, "serial correlation", "dependent samples"),
+    "sorted samples": ("interval", {"sample": lambda u: 2 + 3 * np.sort(u[:, 0])}, "serial correlation", "order of the rows"),
+    "one azimuth a batch": ("sphere", {"sample": one_azimuth}, "serial correlation", "order of the rows"),
     "a curve that fills the sphere": ("sphere", {"sample": threaded, "samples": 10 * N}, "chi-square, fine joint", "correlation"),
     "few different numbers": (
         "interval", {"sample": lambda u: 2 + 3 * np.floor(2**15 * u[:, 0]) / 2**15}, "repeated points", "atom"),
@@ -314,7 +314,7 @@ def test_a_sampler_that_breaks_its_contract_is_told_how(sample, message):
 
 BAD_ARGUMENTS = [
     ({"alpha": 0}, "alpha must lie in"),
-    ({"samples": 10}, "samples must be at least 100"),
+    ({"samples": 10}, "samples must be a whole number >= 100"),
     ({"dimensions": 0}, "dimensions must be a whole number >= 1"),
     ({"precision": "float16"}, "precision must be"),
     ({"atoms": {0.5: 1.5}}, "must be a probability"),

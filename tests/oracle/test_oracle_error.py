@@ -45,7 +45,7 @@ def test_a_quantity_that_fails_breaks_its_promise_and_costs_no_other(monkeypatch
         ("-2e0", "1e-1", -2.0, 1.0, 0.1 / 2.1, 0.0),
         ("inf", "0", math.inf, 0.0, 0.0, 0.0),
         ("inf", "0", 1e300, 1.0, math.inf, math.inf),
-        ("1", "0", math.nan, 1.0, math.inf, math.inf),
+        ("1", "0", math.nan, math.nan, math.inf, math.inf),
         ("1", "0", 7.0, math.inf, 6.0, 0.0),
     ],
 )

@@ -17,7 +17,7 @@ from fogproof.scene import (
     Tabulated,
 )
 from fogproof.scene.files import read_fields
-from fogproof.scene.phase_functions import PHASE_FUNCTIONS, PhaseFunctionField
+from fogproof.scene.phase import PhaseFunctionField
 
 REFUSED = [
     (lambda: HenyeyGreenstein(1.0), r"g must lie in the open interval \(-1, 1\), got 1.0; at the ends"),
@@ -116,10 +116,3 @@ WRONG = [
 def test_files_are_refused_with_the_place(table, message):
     with pytest.raises(FogproofError, match=message):
         read_fields({"phase": PhaseFunctionField}, {"phase": table}, "request")
-
-
-def test_every_kind_has_its_place_in_the_oracle():
-    from fogproof.analytic.phase import functions as phase_functions
-
-    served = {*phase_functions.FORMULAS, DoubleHenyeyGreenstein, Mixture}
-    assert served == set(PHASE_FUNCTIONS.values())

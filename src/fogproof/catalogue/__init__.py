@@ -1,32 +1,22 @@
-"""The catalogue: every sampler and estimator with its scene, its reference, its source and its broken twin."""
+"""The catalogue: every sampler and estimator with its scene, its reference, its source and its broken twin.
+
+A module below this folder that has a function `cases()` is a part of it; nothing lists the modules.
+"""
 
 from __future__ import annotations
 
+import importlib
+import pkgutil
 from functools import cache
 
-from fogproof.catalogue.airlight import equiangular, single_scattering
 from fogproof.catalogue.cases import Altered, Case, EstimatorCase, SamplerCase, Twin
-from fogproof.catalogue.free_paths import sampled as free_paths
-from fogproof.catalogue.multiple import paths as multiple_scattering
-from fogproof.catalogue.phase import cosines, directions, mitsuba
-from fogproof.catalogue.rays import transmittance_and_fog
-from fogproof.catalogue.tracking import trackers
 
 __all__ = ["Altered", "Case", "EstimatorCase", "SamplerCase", "Twin", "all_cases"]
 
 
 @cache
 def all_cases() -> tuple[Case, ...]:
-    """Return every case, in the order in which it is reported."""
-    groups = (
-        directions,
-        cosines,
-        free_paths,
-        equiangular,
-        transmittance_and_fog,
-        trackers,
-        single_scattering,
-        multiple_scattering,
-        mitsuba,
-    )
-    return tuple(case for group in groups for case in group.cases())
+    """Return every case, in the order of the folders; in a folder, in the order of the modules' names."""
+    names = sorted(found.name for found in pkgutil.walk_packages(__path__, prefix=f"{__name__}.") if not found.ispkg)
+    groups = (getattr(importlib.import_module(name), "cases", None) for name in names)
+    return tuple(case for group in groups if group is not None for case in group())

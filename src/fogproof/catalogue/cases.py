@@ -71,6 +71,7 @@ class SamplerCase:
     weight      share of the run's false-alarm probability, relative to the other cases
     expected    the outcome; "rejected" is a known finding, and `reason` says why
     needs       the extra that must be installed, "" if none
+    by_name     whether it runs only when asked for by its name or its folder's
     """
 
     kind: Literal["sampler"] = "sampler"
@@ -87,6 +88,7 @@ class SamplerCase:
     expected: Outcome = "not rejected"
     reason: str = ""
     needs: str = ""
+    by_name: bool = False
 
     def run(self, alpha: float, seed: int, samples: int | None = None, twin: bool = False) -> Verdict:
         """Check the subject, or its twin, inside the false-alarm probability alpha."""
@@ -130,6 +132,7 @@ class EstimatorCase:
     expected: Outcome = "not rejected"
     reason: str = ""
     needs: str = ""
+    by_name: bool = False
 
     def run(self, alpha: float, seed: int, samples: int | None = None, twin: bool = False) -> Verdict:
         """Check the subject, or its twin, inside the false-alarm probability alpha."""

@@ -8,10 +8,20 @@ from fogproof.checks.sampler import SamplerCheck, check_sampler
 from fogproof.checks.streams import batch_generator, batch_sizes, fresh_seed
 from fogproof.checks.subject import Subject
 from fogproof.checks.tally import Tally
-from fogproof.checks.verdict import Finding, Interval, Outcome, RejectedError, Resolution, Verdict, jsonable
+from fogproof.checks.verdict import (
+    Finding,
+    InconclusiveError,
+    Interval,
+    Outcome,
+    RejectedError,
+    Resolution,
+    Verdict,
+    jsonable,
+)
 
 __all__ = [
     "Finding",
+    "InconclusiveError",
     "Interval",
     "Outcome",
     "RejectedError",

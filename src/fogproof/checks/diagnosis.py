@@ -10,8 +10,13 @@ from fogproof.checks.density.grid import Marginal
 from fogproof.checks.verdict import Finding
 
 CAUSES = (
+    "writes into its uniforms",
+    "hidden state",
+    "ignores its uniforms",
+    "order of the rows",
+    "size of the call",
+    "not a number",
     "outside the domain",
-    "edge of the uniforms",
     "claimed hole",
     "wrong measure",
     "normalisation",
@@ -23,6 +28,7 @@ CAUSES = (
     "wrong probability of an atom",
     "wrong formula",
     "cancellation",
+    "edge of the uniforms",
     "dependent samples",
     "atom",
     "missing tail",

@@ -22,6 +22,7 @@ WEIGHTS = {
     "scan": 1.0,
     "ends": 0.5,
     "atom": 1.0,
+    "event": 0.5,
     "lost samples": 0.25,
     "mean weight": 0.5,
     "joint": 1.0,

@@ -44,7 +44,7 @@ _SUSPICIOUS = 0.005  # of one sample in the sum of squares: the tail is looked a
 
 def check_estimator(
     draw: Callable[[np.random.Generator, int], Any],
-    reference: Reference | Mapping[int, Reference],
+    reference: Reference | float | Mapping[int, Reference | float],
     *,
     variance: Reference | float | None = None,
     cost: Reference | float | None = None,
@@ -56,8 +56,8 @@ def check_estimator(
 
     draw       `draw(rng, n)` -> (n,) or (n, channels) independent realisations, or `Draws`; where these hold standard errors,
                their squares must be right on average, and intervals of two of them must hold the reference
-    reference  its expectation, () or (channels,), with an error bound that is counted; or {label: Reference}, the expectations
-               of the contributions of each `Draws.order` (scattering orders, or strategies)
+    reference  its expectation, () or (channels,): a number, or a `Reference` with an error bound that is counted; or
+               {label: expectation} of the contributions of each `Draws.order` (scattering orders, or strategies)
     variance   the exact variance of one realisation, tested as the mean of (X - reference)^2; 0 declares that there is none
     cost       the exact expectation of `Draws.cost`
     samples    most realisations
@@ -97,8 +97,9 @@ def _beyond_doubt(findings: list[Finding]) -> bool:
     return any(f.p_value is None or f.p_value <= EARLY * (f.alpha or 1.0) for f in rejected)
 
 
-def _channels_of(reference: Reference | Mapping[int, Reference]) -> int:
-    references = list(reference.values()) if isinstance(reference, Mapping) else [reference]
+def _channels_of(reference: Reference | float | Mapping[int, Reference | float]) -> int:
+    given = list(reference.values()) if isinstance(reference, Mapping) else [reference]
+    references = [Reference.of("reference", one) for one in given]
     return max((np.broadcast(np.atleast_1d(r.value), r.error).size for r in references), default=1)
 
 
@@ -175,7 +176,7 @@ class _Record:
         return _Record(quantities, empty, Succession(middle), Coverage())
 
     def after(self, draws: Draws, n: int) -> _Record:
-        bad = int(np.count_nonzero(~np.isfinite(draws.value).all(axis=1)))
+        bad = int(np.count_nonzero(~_usable(draws)))
         if bad or self.bad:
             return replace(self, n=self.n + n, bad=self.bad + bad)
         moments = tuple(
@@ -206,10 +207,20 @@ class _Record:
         return jsonable({"kind": "mean", "reference": mean.value[channel], "error": mean.error[channel], **columns})
 
 
+def _usable(draws: Draws) -> np.ndarray:
+    """Return (n,) which realisations are finite in everything they report; a standard error is not negative either."""
+    good = np.isfinite(draws.value).all(axis=1)
+    for part, least in ((draws.cost, -np.inf), (draws.stderr, 0.0)):
+        if part is not None:
+            columns = np.asarray(part, dtype=np.float64).reshape(len(good), -1)
+            good &= (np.isfinite(columns) & (columns >= least)).all(axis=1)
+    return good
+
+
 def _judged(record: _Record, source: _Source, alpha: float, complete: bool) -> list[Finding]:
     """Return all findings; the statistical ones share alpha. Only once all is drawn are doubtful means looked at again."""
     if record.bad:
-        message = f"{record.bad} of {record.n} realisations are not finite"
+        message = f"{record.bad} of {record.n} realisations are not finite, in value, cost or standard error"
         return [Finding("finite values", "rejected", message, effect=record.bad / record.n, cause="bias")]
     findings = [Finding("finite values", "not rejected", f"all {record.n} realisations are finite")]
     claims = [(q, c) for q in record.quantities for c in range(len(q.value))]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -22,9 +23,11 @@ from fogproof.checks.density.grid import (
 from fogproof.checks.density.lookup import Lookup
 from fogproof.checks.density.model import Density, Effort, integrated, looked_at, looked_at_plane
 from fogproof.checks.density.quadrature import Leaves
+from fogproof.checks.edges import edge_uniforms, no_edge_uniforms
 from fogproof.checks.normalisation import FLOOR, albedo, effort, mean_cosine, normalisation, rounding_share
-from fogproof.checks.probes import cdf_agreement, edge_uniforms, precision_agreement, reference_agreement
+from fogproof.checks.probes import cdf_agreement, precision_agreement, reference_agreement
 from fogproof.checks.promises import inside, usual_labels
+from fogproof.checks.purity import purity
 from fogproof.checks.statistics.repeats import KEPT, expected_repeats
 from fogproof.checks.statistics.serial import in_units
 from fogproof.checks.streams import batch_generator
@@ -36,7 +39,6 @@ from fogproof.domains import Discrete, HalfLine, RealLine, UnitHemisphere, UnitS
 PILOT = 1 << 14
 """Samples that set scales and show where the density is; they are not counted."""
 
-_MOST_DIMENSIONS_AT_EDGES = 4  # 4^dimensions combinations of edge uniforms are tried
 _COMPARED = 1024  # groups of cells in which a given cdf is compared with the pdf
 _PRECISION_POINTS = 4096
 
@@ -46,7 +48,7 @@ class Pilot:
     """A first sample: good points (n, ...) of the continuous part, usual event labels, and how many channels its weights have."""
 
     points: np.ndarray
-    labels: dict[float | None, int]
+    labels: dict[Any, int]
     channels: int
 
 
@@ -141,8 +143,11 @@ def prepare(subject: Subject, samples: int, seed: int) -> Prepared:
     """Integrate the claim, lay out cells for up to `samples` samples, and ask all single questions."""
     pilot = _pilot(subject, seed)
     findings = []
-    if subject.dimensions is not None and subject.dimensions <= _MOST_DIMENSIONS_AT_EDGES:
-        findings.append(edge_uniforms(subject))
+    if subject.dimensions is None:
+        findings.append(no_edge_uniforms())
+    else:
+        uniforms = subject.uniforms(batch_generator(seed, "samples", 0, 0), PILOT)
+        findings += [*purity(subject, uniforms), edge_uniforms(subject, pilot.labels)]
     if subject.reference is not None and len(pilot.points):
         findings.append(reference_agreement(subject, pilot.points))
     if isinstance(subject.domain, Discrete):
@@ -219,7 +224,7 @@ def _ranges(claim: Claim) -> Ranges:
 
 def _discrete(subject: Subject) -> Marginal:
     assert isinstance(subject.domain, Discrete)
-    n = subject.domain.n
+    n = int(subject.domain.n)
     mass = subject.density(np.arange(n, dtype=np.float64))
     mass = np.where(np.isfinite(mass) & (mass > 0), mass, 0.0)
     cdf = np.concatenate([[0.0], np.cumsum(mass)]) / (mass.sum() if mass.sum() > 0 else 1.0)

@@ -1,8 +1,7 @@
-"""Single questions put to a sampler: extreme uniforms, an independent reference, a given cdf, the other precision."""
+"""Single questions put to a sampler: an independent reference, a given cdf, the other precision, the support of `eval`."""
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable
 
 import numpy as np
@@ -10,37 +9,9 @@ import numpy as np
 from fogproof.checks.promises import at_any_atom, inside
 from fogproof.checks.subject import Subject, rounding_spread
 from fogproof.checks.verdict import Finding, Resolution
-from fogproof.errors import SubjectError, shorten
+from fogproof.errors import shorten
 
 _PRECISION_LOSS = 1e-3  # of probability: single precision may lose digits, but not the distribution
-
-
-def edge_uniforms(subject: Subject) -> Finding:
-    """Uniforms 0, the smallest denormal, 1/2 and the largest below 1 must give points of the domain with a sane density."""
-    kind = np.float32 if subject.precision == "float32" else np.float64
-    edges = np.array([0.0, np.finfo(kind).smallest_subnormal, 0.5, np.nextafter(kind(1), kind(0))], dtype=kind)
-    assert subject.dimensions is not None
-    u = np.array(list(itertools.product(edges, repeat=subject.dimensions)), dtype=kind)
-    name, cause = "edge uniforms", "edge of the uniforms"
-    try:
-        with np.errstate(all="ignore"):
-            draw = subject.draw_at(u)
-            bad = ~inside(subject, draw)
-            within = draw.x[~bad & ~at_any_atom(subject, draw.x)]
-            sane = subject.density(within) >= 0
-    except SubjectError as error:
-        return Finding(name, "rejected", f"with uniforms 0, denormal, 1/2 and 1 - ulp, {error}", cause=cause)
-    if bad.any():
-        i = int(np.argmax(bad))
-        message = f"u = {shorten(u[i])} gives x = {shorten(draw.x[i])}, outside {subject.domain}"
-        return Finding(name, "rejected", message, cause=cause)
-    if not sane.all():
-        i = int(np.argmin(sane))
-        message = f"an edge uniform gives x = {shorten(within[i])}, where the pdf is not >= 0"
-        return Finding(name, "rejected", message, cause=cause)
-    return Finding(
-        name, "not rejected", f"all {len(u)} combinations of 0, denormal, 1/2 and 1 - ulp give points of the domain"
-    )
 
 
 def reference_agreement(subject: Subject, points: np.ndarray) -> Finding:

@@ -5,21 +5,26 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
-from fogproof.checks.subject import Subject, call, in_domain, nudged, rounding_spread
+from fogproof.checks.subject import Subject, call, in_domain, named, nudged, rounding_spread
 from fogproof.checks.verdict import Finding
 from fogproof.contracts import Draw
+from fogproof.domains import Discrete
 from fogproof.errors import shorten
 
 _CAUSES = {
     "domain": "outside the domain",
     "positive pdf": "claimed hole",
+    "finite weight": "not a number",
+    "finite pdf": "not a number",
     "returned pdf": "wrong pdf returned",
     "returned probability": "wrong pdf returned",
     "weight": "wrong weight",
     "event": "wrong event label",
+    "declared events": "wrong event label",
 }
 
 
@@ -37,15 +42,15 @@ def inside(subject: Subject, draw: Draw) -> np.ndarray:
     return good if draw.valid is None else good | ~draw.valid
 
 
-def _places(subject: Subject, x: np.ndarray) -> dict[float | None, np.ndarray]:
+def _places(subject: Subject, x: np.ndarray) -> dict[Any, np.ndarray]:
     """Return which points (n,) are at each atom, by its point, and which are elsewhere, by None."""
-    places: dict[float | None, np.ndarray] = {None: ~at_any_atom(subject, x)}
+    places: dict[Any, np.ndarray] = {None: ~at_any_atom(subject, x)}
     for point, at in subject.at_atom(x).items():
         places[point] = at
     return places
 
 
-def usual_labels(subject: Subject, draw: Draw) -> dict[float | None, int]:
+def usual_labels(subject: Subject, draw: Draw) -> dict[Any, int]:
     """Return the usual event label at each atom (by its point) and elsewhere (None), as far as the batch shows them."""
     if draw.event is None:
         return {}
@@ -62,7 +67,7 @@ class Watch:
     """
 
     subject: Subject
-    labels: dict[float | None, int] = field(default_factory=dict)
+    labels: dict[Any, int] = field(default_factory=dict)
     broken: dict[str, tuple[int, str]] = field(default_factory=dict)
     seen: dict[str, int] = field(default_factory=dict)
 
@@ -79,8 +84,16 @@ class Watch:
         at = np.flatnonzero(good)
         points = x if len(at) == len(x) else x[at]
         p = subject.density(points)
+        self._finite(draw)
+        if draw.event is not None and subject.events:
+            unknown = ~np.isin(draw.event, list(subject.events))
+            self._note(
+                "declared events", unknown, _quote("label", draw.event, "is not among the declared events"), len(x)
+            )
         zero = ~((p > 0) & (p < np.inf))
-        if zero.any():  # a point on the very edge of the support may fall out of it by rounding
+        if zero.any() and not isinstance(
+            subject.domain, Discrete
+        ):  # the very edge of the support may be missed by rounding
             near = [subject.density(y) for y in nudged(points[zero], subject.roundoff)]
             zero[zero] = ~np.any([np.isfinite(q) & (q > 0) for q in near], axis=0)
         self._note("positive pdf", zero, lambda i: f"pdf is {p[i]:g} at the sampled x = {shorten(points[i])}", len(at))
@@ -92,10 +105,24 @@ class Watch:
             self._events(draw.event, x)
         return good, p
 
+    def _finite(self, draw: Draw) -> None:
+        """Weights and densities of valid samples must be numbers, wherever the samples are."""
+        valid = np.ones(len(draw.x), dtype=bool) if draw.valid is None else draw.valid
+        for name, values in (("weight", draw.weight), ("pdf", draw.pdf)):
+            if values is None:
+                continue
+            odd = ~np.isfinite(values)
+            rows = valid & (odd if odd.ndim == 1 else odd.any(axis=1))
+            if name == "pdf" and rows.any():  # where the claimed density is infinite, what is returned may be too
+                at = np.flatnonzero(rows & in_domain(self.subject.domain, draw.x, self.subject.roundoff))
+                rows[at] = self.subject.density(draw.x[at]) != values[at]
+            tell = lambda i, n=name, v=values: f"{n} {shorten(v[i])} at x = {shorten(draw.x[i])}"  # noqa: E731
+            self._note(f"finite {name}", rows, tell, len(rows))
+
     def _returned(self, returned: np.ndarray, x: np.ndarray, at: np.ndarray, p: np.ndarray) -> None:
         subject = self.subject
         got = returned[at]
-        differ = ~(np.abs(got - p) <= 64 * subject.roundoff * np.abs(p))
+        differ = ~(np.abs(got - p) <= 64 * subject.roundoff * np.abs(p)) & (got != p)
         if differ.any():
             slack = rounding_spread(subject.density, x[at[differ]], subject.roundoff)
             differ[differ] = ~(np.abs(got[differ] - p[differ]) <= slack)
@@ -110,7 +137,7 @@ class Watch:
         for point, hits in subject.at_atom(x).items():
             values, declared = returned[hits], subject.atoms[point]
             wrong = ~(np.abs(values - declared) <= 1e7 * subject.roundoff * declared)
-            text = f"at the atom {point:g}, declared {declared:.9g}"
+            text = f"at the atom {named(point)}, declared {declared:.9g}"
             self._note("returned probability", wrong, _quote("sample returned", values, text), len(wrong))
 
     def _weights(self, got: np.ndarray, points: np.ndarray) -> None:
@@ -123,12 +150,12 @@ class Watch:
             return value / (p if value.ndim == 1 else p[:, None])
 
         w = right(points)
-        differ = ~(np.abs(got - w) <= 64 * subject.roundoff * np.abs(w))
+        differ = ~(np.abs(got - w) <= 64 * subject.roundoff * np.abs(w)) & np.isfinite(w)
         rows = np.flatnonzero(differ if differ.ndim == 1 else differ.any(axis=1))
         wrong = np.zeros(len(points), dtype=bool)
         if len(rows):
             slack = rounding_spread(right, points[rows], subject.roundoff)
-            off = ~(np.abs(got[rows] - w[rows]) <= slack)
+            off = ~(np.abs(got[rows] - w[rows]) <= slack) & differ[rows]
             wrong[rows] = off if off.ndim == 1 else off.any(axis=1)
         tell = lambda i: f"weight {shorten(got[i])}, eval/pdf is {shorten(w[i])} at x = {shorten(points[i])}"  # noqa: E731
         self._note("weight", wrong, tell, len(points))
@@ -142,7 +169,7 @@ class Watch:
             wrong = got != usual
             if place is not None and usual == self.labels.get(None):
                 wrong = np.ones(len(got), dtype=bool)
-            spot = "between the atoms" if place is None else f"at the atom {place:g}"
+            spot = "between the atoms" if place is None else f"at the atom {named(place)}"
             self._note("event", wrong, _quote("label", got, f"{spot}, where {usual} is usual"), len(got))
 
     def _note(self, name: str, bad: np.ndarray, tell: Callable[[int], str], n: int) -> None:

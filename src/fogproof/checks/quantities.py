@@ -9,6 +9,7 @@ import numpy as np
 
 from fogproof.contracts import Draws, Reference
 from fogproof.errors import SubjectError
+from fogproof.validate import require
 
 
 @dataclass(frozen=True)
@@ -32,7 +33,7 @@ class Quantity:
 
 
 def quantities_of(
-    reference: Reference | Mapping[int, Reference],
+    reference: Reference | float | Mapping[int, Reference | float],
     variance: Reference | float | None,
     cost: Reference | float | None,
     with_stderr: bool,
@@ -40,11 +41,11 @@ def quantities_of(
     """Return all that is known of an estimator, the means of its values first."""
     if isinstance(reference, Mapping):
         return [_order(label, one) for label, one in reference.items()] + _cost(cost)
-    value, error = _exact(reference, None)
+    value, error = _exact("reference", reference, None)
     spread = None
     more = []
     if variance is not None:
-        v, v_error = _exact(variance, len(value))
+        v, v_error = _exact("variance", variance, len(value))
         spread = v + v_error
         # (X - r)^2 has expectation V + (mean - r)^2, and |mean - r| <= error.
         more.append(Quantity("variance", lambda d: (d.value - value) ** 2, v, v_error + error**2, "wrong variance"))
@@ -61,8 +62,8 @@ def quantities_of(
     return [Quantity("mean", lambda d: d.value, value, error, "bias", spread), *more, *_cost(cost)]
 
 
-def _order(label: int, reference: Reference) -> Quantity:
-    value, error = _exact(reference, None)
+def _order(label: int, reference: Reference | float) -> Quantity:
+    value, error = _exact("reference", reference, None)
 
     def numbers(d: Draws) -> np.ndarray:
         if d.order is None:
@@ -81,14 +82,17 @@ def _cost(cost: Reference | float | None) -> list[Quantity]:
             raise SubjectError("draw must return Draws with a cost when a reference cost is given", "draw: cost")
         return _column(d.cost)
 
-    value, error = _exact(cost, 1)
+    value, error = _exact("cost", cost, 1)
     return [Quantity("cost", numbers, value, error, "wrong cost")]
 
 
-def _exact(reference: Reference | float, channels: int | None) -> tuple[np.ndarray, np.ndarray]:
-    value, error = (reference.value, reference.error) if isinstance(reference, Reference) else (reference, 0.0)
-    value, error = np.atleast_1d(np.asarray(value, dtype=float)), np.atleast_1d(np.asarray(error, dtype=float))
-    value, error = np.broadcast_arrays(value, error)
+def _exact(name: str, reference: Reference | float, channels: int | None) -> tuple[np.ndarray, np.ndarray]:
+    reference = Reference.of(name, reference)
+    value, error = np.broadcast_arrays(np.atleast_1d(reference.value), np.atleast_1d(reference.error))
+    for part, array in ((name, value), (f"{name}: error", error)):
+        require(part, array, np.isfinite(array), "must be finite", "nothing can be held to a value that is not known")
+    if name != "reference":
+        require(name, value, value >= -error, "must be >= 0")
     if channels is not None:
         value, error = np.broadcast_to(value, (channels,)), np.broadcast_to(error, (channels,))
     return value, error

@@ -12,33 +12,25 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
 from itertools import pairwise
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 
+from fogproof.checks.declared import declared, unchecked
 from fogproof.checks.diagnosis import likely_cause, mirrored
-from fogproof.checks.escalation import EARLY, Stage, Test, doubtful, judged, stages, total_weight
+from fogproof.checks.escalation import EARLY, Stage, doubtful, judged, stages, total_weight
 from fogproof.checks.figures import bins_figure, z_map_figure
-from fogproof.checks.normalisation import FLOOR
 from fogproof.checks.prepared import Prepared, prepare
-from fogproof.checks.statistics.goodness import binomial, chi_square, chi_square_along, chi_square_sparse, kolmogorov
-from fogproof.checks.statistics.means import Moments, mean_test
-from fogproof.checks.statistics.repeats import repeats_test
-from fogproof.checks.statistics.scan import blocks, scan, scan_ends, scan_plane
-from fogproof.checks.statistics.serial import serial_test
-from fogproof.checks.statistics.smooth import cross, smooth
-from fogproof.checks.streams import batch_generator, batch_sizes, fresh_seed
+from fogproof.checks.statistics.scan import blocks
+from fogproof.checks.streams import batch_generator, batch_sizes
 from fogproof.checks.subject import Precision, Subject
+from fogproof.checks.suite import tests_of
 from fogproof.checks.tally import Tally
 from fogproof.checks.verdict import Finding, Verdict
 from fogproof.contracts import Reference
-from fogproof.domains import Domain, HalfLine, Interval, RealLine, UnitSphere
-from fogproof.errors import InvalidValueError
-from fogproof.validate import number
-
-_CELLS = 512  # of the chi-square test along an axis
+from fogproof.domains import Domain, UnitSphere
 
 
 def check_sampler(
@@ -47,7 +39,7 @@ def check_sampler(
     domain: Domain,
     *,
     dimensions: int | None,
-    atoms: Mapping[float, float] | None = None,
+    atoms: Mapping[Any, float] | None = None,
     cdf: Callable[[np.ndarray], Any] | None = None,
     eval: Callable[[np.ndarray], Any] | None = None,
     axis: tuple[float, float, float] | None = None,
@@ -55,6 +47,9 @@ def check_sampler(
     albedo: float | tuple[float, ...] | None = None,
     reference: Callable[[np.ndarray], Reference] | None = None,
     precision: Precision = "float64",
+    events: Mapping[int, float] | None = None,
+    uniform_bits: int | None = None,
+    quasi_random: bool = False,
     resolution: float | None = None,
     samples: int = 1_000_000,
     alpha: float = 1e-6,
@@ -65,13 +60,16 @@ def check_sampler(
     sample       `sample(u)` with u (n, dimensions) in [0, 1) -> points or `Draw`; `sample(rng, n)` if `dimensions` is None
     pdf          `pdf(x)` -> (n,) density of the continuous part in the domain's measure (a probability on `Discrete`)
     domain       where the points live, see `fogproof.domains`
-    atoms        {point: probability} of a one-dimensional domain; a point may be inf
+    atoms        {point: probability}; a point may be inf, and is a tuple where points are several numbers
     cdf          `cdf(x)` -> (n,) P(X <= x), atoms included; on two dimensions the Rosenblatt map, (n, 2) in [0, 1]^2
     eval         `eval(x)` -> (n,) or (n, channels), the function that weights are for: a weight must be eval(x) / pdf(x)
     axis         unit vector; `mean_cosine` is the declared mean of x . axis on the sphere
     albedo       the integral of `eval` over the domain, one number or one a channel; without `eval`, the mean weight
     reference    x -> `Reference`: what pdf(x) should be, from an independent source
     precision    "float32" if the sampler computes in single precision: uniforms and tolerances follow
+    events       {label: probability} of every event label that `Draw.event` may have
+    uniform_bits how many bits the uniforms inside the sampler have, if fewer than the precision's own: repeated values follow
+    quasi_random True if the points of one call are stratified or a low-discrepancy sequence: only their distribution is tested
     resolution   Kolmogorov distance to detect: the first look is sized for it, and a sampler that is clearly right stops there
     samples      most samples to draw
     alpha        false-alarm probability of this call with everything in it
@@ -91,6 +89,9 @@ def check_sampler(
             albedo,
             reference,
             precision,
+            dict(events or {}),
+            uniform_bits,
+            quasi_random,
         ),
         resolution,
         samples,
@@ -118,8 +119,7 @@ class SamplerCheck:
     def of(subject: Subject, resolution: float | None, samples: int, alpha: float, seed: int | None) -> SamplerCheck:
         """Validate the arguments, those of `check_sampler`, and ask all questions that need no samples."""
         started = time.perf_counter()
-        _validate(subject, samples, alpha, resolution)
-        seed = fresh_seed() if seed is None else seed
+        subject, samples, seed = declared(subject, resolution, samples, alpha, seed)
         with np.errstate(all="ignore"):  # what is infinite or undefined is found, not warned of
             prepared = prepare(subject, samples, seed)
         weight = total_weight(tests_of(prepared, prepared.counter.empty()))
@@ -190,8 +190,18 @@ class SamplerCheck:
             f" seed={self.seed})"
         )
         seconds = time.perf_counter() - self.started
-        cause = likely_cause(findings)
-        return Verdict(tuple(findings), self.alpha, tally.drawn, self.seed, seconds, settings, cause, reproduce)
+        pilot = self.prepared.pilot
+        return Verdict(
+            tuple(findings),
+            self.alpha,
+            tally.drawn,
+            self.seed,
+            seconds,
+            settings,
+            likely_cause(findings),
+            reproduce,
+            unchecked=unchecked(subject, pilot.channels, bool(pilot.labels)),
+        )
 
 
 def judge(prepared: Prepared, tally: Tally, alpha: float, final: bool = True) -> list[Finding]:
@@ -203,58 +213,6 @@ def judge(prepared: Prepared, tally: Tally, alpha: float, final: bool = True) ->
     if rejected and sphere and mirrored(prepared.grid.marginals[0], tally.fine[0]):
         statistical = [f.because("sign convention") if f.cause else f for f in statistical]
     return findings + _illustrated(prepared, tally, statistical)
-
-
-def tests_of(prepared: Prepared, tally: Tally) -> list[Test]:
-    """Return the statistical tests of a subject; which ones depends on what it declares, not on the samples."""
-    subject, grid = prepared.subject, prepared.grid
-    tests: list[Test] = []
-
-    def add(kind: str, run: Callable[..., Finding], name: str, *arguments: Any) -> None:
-        tests.append(Test(kind, partial(run, name, *arguments)))
-
-    several = len(grid.marginals) > 1
-    for axis, (marginal, counts) in enumerate(zip(grid.marginals, tally.fine, strict=True)):
-        of, along = (f" of {marginal.label}", f" in {marginal.label}") if several else ("", "")
-        add("distribution", kolmogorov, f"distribution{of}", marginal, counts)
-        add("smooth", smooth, f"smooth components{along}", marginal, counts)
-        add("chi-square", chi_square_along, f"chi-square{along}", marginal, counts, _CELLS)
-        add("scan", scan, f"scan{along}", marginal, counts)
-        if marginal.ends:
-            low, high = tally.extremes[axis]
-            add("ends", scan_ends, f"ends{of}", marginal, counts, low, high)
-    if grid.plane is not None and tally.plane is not None:
-        plane, coarse = grid.plane, blocks(tally.plane, len(grid.plane.mass))
-        labels = (grid.marginals[0].label, grid.marginals[1].label)
-        add("joint", chi_square, "chi-square, joint", coarse, plane.mass, plane.error, plane.blur(len(coarse)))
-        add("dependence", cross, "dependence of the axes", labels, plane, coarse)
-        add("patches", scan_plane, "scan for patches", labels, plane, tally.plane)
-        if plane.independent:
-            shares, blur = plane.shares[0][:, None] * plane.shares[1], plane.blur(plane.size)
-            fine = tally.plane.ravel(), shares.ravel(), blur.ravel()
-            add("fine joint", chi_square_sparse, "chi-square, fine joint", *fine)
-    add("serial correlation", serial_test, "serial correlation", tally.serial)
-    if prepared.counter.fingerprinted:
-        add("repeated points", repeats_test, "repeated points", tally.prints, prepared.expected_repeats)
-    n = max(tally.drawn, 1)
-    wrong_atom = "wrong probability of an atom"
-    rest, slack = 1 - sum(subject.atoms.values()), FLOOR[subject.precision]
-    what, cause = "probability of the continuous part", wrong_atom if subject.atoms else "lost samples"
-    add("lost samples", binomial, "continuous part", what, tally.continuous, n, rest - slack, rest + slack, cause)
-    for point, q in subject.atoms.items():
-        what = f"probability of the atom at {point:g}"
-        add("atom", binomial, "atom", what, tally.atoms[point], n, q * (1 - 1e-15), q * (1 + 1e-15), wrong_atom)
-    if prepared.pilot.channels and subject.albedo is not None:
-        claims = np.broadcast_to(np.asarray(subject.albedo, dtype=float), (prepared.pilot.channels,))
-        data = tally.weights or (Moments(),) * len(claims)
-        for channel, claimed in enumerate(claims.tolist()):
-            name = "mean weight" if len(claims) == 1 else f"mean weight of channel {channel}"
-            add("mean weight", _mean_weight, name, data[channel], claimed)
-    return tests
-
-
-def _mean_weight(name: str, data: Moments, claimed: float, alpha: float) -> Finding:
-    return mean_test(name, name, data, claimed, 1e-6 * abs(claimed), alpha, "wrong weight")
 
 
 def _illustrated(prepared: Prepared, tally: Tally, findings: list[Finding]) -> list[Finding]:
@@ -273,23 +231,3 @@ def _illustrated(prepared: Prepared, tally: Tally, findings: list[Finding]) -> l
 
 def _name(function: Any) -> str:
     return getattr(function, "__qualname__", type(function).__name__)
-
-
-def _validate(subject: Subject, samples: int, alpha: float, resolution: float | None) -> None:
-    if not isinstance(subject.domain, get_args(Domain)):
-        known = ", ".join(kind.__name__ for kind in get_args(Domain))
-        raise InvalidValueError("domain", f"must be one of {known}", subject.domain)
-    if subject.dimensions is not None and not (isinstance(subject.dimensions, int) and subject.dimensions >= 1):
-        raise InvalidValueError("dimensions", "must be a whole number >= 1, or None", subject.dimensions)
-    if subject.precision not in get_args(Precision):
-        raise InvalidValueError("precision", "must be 'float64' or 'float32'", subject.precision)
-    number("alpha", alpha, "must lie in (0, 1)", 0, 1, open_ends=True)
-    number("samples", samples, "must be at least 100", 100)
-    if resolution is not None:
-        number("resolution", resolution, "must lie in (0, 1)", 0, 1, open_ends=True)
-    if subject.atoms and not isinstance(subject.domain, (Interval, HalfLine, RealLine)):
-        raise InvalidValueError("atoms", "need a domain of one dimension", subject.domain)
-    for point, probability in subject.atoms.items():
-        number(f"atoms[{point!r}]", probability, "must be a probability in [0, 1]", 0, 1)
-    if subject.mean_cosine is not None and subject.axis is None:
-        raise InvalidValueError("axis", "must be given with mean_cosine", subject.axis)

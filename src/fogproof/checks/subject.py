@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from fogproof.contracts import Draw, Reference
-from fogproof.domains import Discrete, Domain, UnitDisk, UnitHemisphere, UnitSphere, UnitSquare, support
+from fogproof.domains import Domain
 from fogproof.errors import FogproofError, SubjectError, shorten
 
 Precision = Literal["float64", "float32"]
@@ -24,7 +24,7 @@ class Subject:
     pdf: Callable[[np.ndarray], Any]
     domain: Domain
     dimensions: int | None
-    atoms: Mapping[float, float] = field(default_factory=dict)
+    atoms: Mapping[Any, float] = field(default_factory=dict)
     cdf: Callable[[np.ndarray], Any] | None = None
     eval: Callable[[np.ndarray], Any] | None = None
     axis: tuple[float, float, float] | None = None
@@ -32,6 +32,14 @@ class Subject:
     albedo: float | tuple[float, ...] | None = None
     reference: Callable[[np.ndarray], Reference] | None = None
     precision: Precision = "float64"
+    events: Mapping[int, float] = field(default_factory=dict)
+    uniform_bits: int | None = None
+    quasi_random: bool = False
+
+    @property
+    def bits(self) -> int:
+        """How many bits the sampler's uniforms have."""
+        return self.uniform_bits or (24 if self.precision == "float32" else 53)
 
     @property
     def roundoff(self) -> float:
@@ -39,38 +47,36 @@ class Subject:
         return UNIT_ROUNDOFF[self.precision]
 
     def draw(self, rng: np.random.Generator, n: int) -> Draw:
-        """Draw n samples, from uniforms or, where the sampler uses a varying number, from the generator itself.
-
-        Uniforms have the subject's own precision: a float64 just below 1 would round to 1 in single precision.
-        """
+        """Draw n samples, from uniforms or, where the sampler uses a varying number, from the generator itself."""
         if self.dimensions is None:
-            return as_draw(call("sample(rng, n)", self.sample, rng, n), n, self.domain)
-        kind = np.float32 if self.precision == "float32" else np.float64
-        return self.draw_at(rng.random((n, self.dimensions), dtype=kind))
+            return as_draw(call("sample(rng, n)", self.sample, rng, n), n, self.domain, self.precision)
+        return self.draw_at(self.uniforms(rng, n))
+
+    def uniforms(self, rng: np.random.Generator, n: int) -> np.ndarray:
+        """Return (n, dimensions) uniforms in the subject's own precision: a float64 just below 1 would round to 1 in single."""
+        assert self.dimensions is not None
+        return rng.random((n, self.dimensions), dtype=self.precision)
 
     def draw_at(self, u: np.ndarray) -> Draw:
         """Map uniforms (n, dimensions) to a `Draw` of float64 arrays."""
-        return as_draw(call("sample(u)", self.sample, u), len(u), self.domain)
+        return as_draw(call("sample(u)", self.sample, u), len(u), self.domain, self.precision)
 
     def density(self, x: np.ndarray) -> np.ndarray:
         """Return pdf(x), (m,) float64."""
         return numbers("pdf(x)", call("pdf(x)", self.pdf, x), (len(x),))
 
-    def at_atom(self, x: np.ndarray) -> dict[float, np.ndarray]:
-        """Return for each declared atom which of the points are at it, in the sampler's precision."""
+    def at_atom(self, x: np.ndarray) -> dict[Any, np.ndarray]:
+        """Return for each declared atom which of the points are at it, in the sampler's precision.
+
+        A number must be the atom's; a point of several numbers, such as a mirrored direction, may differ from it by rounding.
+        """
+        if x.ndim > 1:
+            slack = 16 * self.roundoff
+            near = {point: np.abs(x - point) <= slack * (1 + np.abs(point)) for point in self.atoms}
+            return {point: each.all(axis=1) for point, each in near.items()}
         if self.precision == "float32":
             return {point: x.astype(np.float32) == np.float32(point) for point in self.atoms}
         return {point: x == point for point in self.atoms}
-
-
-def point_shape(domain: Domain) -> tuple[int, ...]:
-    """Return the shape of one point of the domain."""
-    match domain:
-        case UnitSphere() | UnitHemisphere():
-            return (3,)
-        case UnitDisk() | UnitSquare():
-            return (2,)
-    return ()
 
 
 def call(what: str, function: Callable[..., Any], *arguments: Any) -> Any:
@@ -84,52 +90,69 @@ def call(what: str, function: Callable[..., Any], *arguments: Any) -> Any:
 
 
 def numbers(what: str, value: Any, shape: tuple[int, ...]) -> np.ndarray:
-    """Return `value` as a float64 array of the shape promised, or say what came instead."""
-    try:
-        array = np.asarray(value)
-    except ValueError as error:
-        raise SubjectError(f"{what} must return an array of shape {shape}: {error}", what) from None
+    """Return `value` as a float64 array of the shape promised, or say what came instead and how to mend it."""
+    array = _array(what, value)
     if array.dtype.kind not in "iufb":
         raise SubjectError(f"{what} must return numbers, got dtype {array.dtype}: {shorten(value)}", what)
     if array.shape != shape:
-        raise SubjectError(f"{what} must return an array of shape {shape}, got {array.shape}", what)
+        fix = _reshaping(array.shape, shape)
+        raise SubjectError(f"{what} must return an array of shape {shape}, got {array.shape}{fix}", what)
     return array.astype(np.float64, copy=False)
 
 
-def as_draw(result: Any, n: int, domain: Domain) -> Draw:
+def _array(what: str, value: Any) -> np.ndarray:
+    """Return anything array-like as a NumPy array; what hides entries or will not be copied is refused with the fix."""
+    if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
+        hidden = int(np.count_nonzero(np.ma.getmaskarray(value)))
+        fix = "mark samples that are given up with Draw(x, valid=~mask)"
+        raise SubjectError(f"{what} is a masked array with {hidden} entries hidden; {fix}", what)
+    try:
+        foreign = not hasattr(value, "__array__") and hasattr(value, "__dlpack__")
+        return np.from_dlpack(value) if foreign else np.asarray(value)
+    except Exception as error:  # whatever a foreign array raises, its user must hear what to do
+        fix = "return a NumPy array (of a tensor: x.detach().cpu().numpy())"
+        raise SubjectError(
+            f"{what} cannot be read as an array ({type(error).__name__}: {error}); {fix}", what
+        ) from None
+
+
+def _reshaping(got: tuple[int, ...], wanted: tuple[int, ...]) -> str:
+    """Return in words how the one shape becomes the other, if that is plain."""
+    if got == wanted[::-1] and len(wanted) == 2:
+        return "; transpose it: one point a row"
+    if got == (*wanted, 1):
+        return "; drop the last axis: x[:, 0]"
+    if got == () and len(wanted) == 1:
+        return "; a constant needs one value a point: np.full(len(x), value)"
+    return ""
+
+
+def as_draw(result: Any, n: int, domain: Domain, precision: Precision = "float64") -> Draw:
     """Return what a sampler returned as a `Draw` of n points; every array has the shape its contract promises."""
+    if isinstance(result, (tuple, list)) and not isinstance(result, Draw) and len(result) and len(result) != n:
+        if all(getattr(part, "shape", None) == (n,) for part in result) and domain.shape == (len(result),):
+            raise SubjectError("sample returned one array a coordinate; join them: np.stack(parts, axis=-1)", "sample")
+        if all(hasattr(part, "shape") or hasattr(part, "__dlpack__") for part in result):
+            given = f"sample returned a {type(result).__name__} of {len(result)}"
+            raise SubjectError(f"{given}; name its parts: fogproof.Draw(x, pdf=..., weight=...)", "sample")
     draw = result if isinstance(result, Draw) else Draw(result)
-    x = numbers("sample: x", draw.x, (n, *point_shape(domain)))
+    x = numbers("sample: x", draw.x, (n, *domain.shape))
+    kind = getattr(draw.x, "dtype", None)
+    if precision == "float64" and str(kind).rpartition(".")[2] in ("float32", "float16", "bfloat16"):
+        fix = 'say precision="float32", or compute in double precision'
+        raise SubjectError(f"sample: x is {kind} where double precision is claimed; {fix}", "sample")
     pdf = None if draw.pdf is None else numbers("sample: pdf", draw.pdf, (n,))
     event = None if draw.event is None else numbers("sample: event", draw.event, (n,))
     valid = None if draw.valid is None else numbers("sample: valid", draw.valid, (n,)).astype(bool)
-    weight = None if draw.weight is None else np.asarray(draw.weight, dtype=np.float64)
-    if weight is not None and (weight.ndim not in (1, 2) or len(weight) != n):
+    weight = None if draw.weight is None else _array("sample: weight", draw.weight)
+    if weight is not None and (weight.ndim not in (1, 2) or len(weight) != n or weight.dtype.kind not in "iufb"):
         raise SubjectError(f"sample: weight must have shape ({n},) or ({n}, channels), got {weight.shape}", "weight")
-    return Draw(x, pdf, weight, event, valid)
+    return Draw(x, pdf, None if weight is None else weight.astype(np.float64, copy=False), event, valid)
 
 
 def in_domain(domain: Domain, x: np.ndarray, roundoff: float) -> np.ndarray:
     """Return which points lie in the domain, up to a few roundings; NaN and infinity do not."""
-    slack = 16 * roundoff
-    match domain:
-        case UnitSphere():
-            return np.abs(_squared(x) - 1) <= 2 * slack
-        case UnitHemisphere():
-            return (np.abs(_squared(x) - 1) <= 2 * slack) & (x[..., 2] >= -slack)
-        case UnitDisk():
-            return _squared(x) <= 1 + 2 * slack
-        case UnitSquare():
-            return np.all((x >= -slack) & (x <= 1 + slack), axis=-1)
-        case Discrete(n):
-            return (x == np.floor(x)) & (x >= 0) & (x < n)
-    low, high = support(domain)
-    scale = slack * max((abs(end) for end in (low, high) if np.isfinite(end)), default=0.0)
-    return np.isfinite(x) & (x >= low - scale) & (x <= high + scale)
-
-
-def _squared(x: np.ndarray) -> np.ndarray:
-    return np.einsum("...i,...i->...", x, x)
+    return domain.contains(x, 16 * roundoff)
 
 
 def nudged(x: np.ndarray, roundoff: float) -> list[np.ndarray]:
@@ -154,3 +177,8 @@ def rounding_spread(f: Callable[[np.ndarray], np.ndarray], x: np.ndarray, roundo
     y = f(x)
     moves = np.sum([np.abs(f(z) - y) for z in nudged(x, roundoff)], axis=0)
     return 64 * roundoff * np.abs(y) + 2 * np.nan_to_num(moves, nan=np.inf)
+
+
+def named(point: Any) -> str:
+    """Return an atom's point in words."""
+    return f"({', '.join(f'{number:g}' for number in point)})" if isinstance(point, tuple) else f"{point:g}"

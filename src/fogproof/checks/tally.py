@@ -35,6 +35,7 @@ class Tally:
     plane    (size, size) of them in each cell of the plane, or None
     extremes (k, 2) their smallest and largest counted coordinates
     atoms    how often each declared atom was hit
+    events   how often each declared event label came up
     serial   products of successive scores
     prints   fingerprints of the points of the first batches
     weights  moments of the returned weights, channel by channel
@@ -47,7 +48,8 @@ class Tally:
     fine: tuple[np.ndarray, ...]
     plane: np.ndarray | None
     extremes: np.ndarray
-    atoms: dict[float, int]
+    atoms: dict[Any, int]
+    events: dict[float, int]
     serial: Successions | None
     prints: np.ndarray
     weights: tuple[Moments, ...]
@@ -81,6 +83,7 @@ class Tally:
             plane,
             np.stack([low, high], axis=-1),
             {point: hits + other.atoms[point] for point, hits in self.atoms.items()},
+            {label: hits + other.events[label] for label, hits in self.events.items()},
             serial,
             np.concatenate([self.prints, other.prints])[:KEPT],
             weights,
@@ -97,7 +100,8 @@ class Tally:
             "fine": [_packed(counts) for counts in self.fine],
             "plane": None if self.plane is None else _packed(self.plane),
             "extremes": _packed(self.extremes),
-            "atoms": [[float.hex(point), hits] for point, hits in self.atoms.items()],
+            "atoms": [[_written(point), hits] for point, hits in self.atoms.items()],
+            "events": [[label, hits] for label, hits in self.events.items()],
             "serial": None
             if serial is None
             else [[_packed(part) for part in (serial.sums, serial.products, serial.squares)], serial.n, serial.pairs],
@@ -119,7 +123,8 @@ class Tally:
             tuple(_unpacked(text) for text in state["fine"]),
             None if state["plane"] is None else _unpacked(state["plane"]),
             _unpacked(state["extremes"]),
-            {float.fromhex(point): hits for point, hits in state["atoms"]},
+            {_read(point): hits for point, hits in state["atoms"]},
+            dict(state["events"]),
             None if serial is None else _successions(serial),
             _unpacked(state["prints"]),
             tuple(Moments.from_dict(moments) for moments in state["weights"]),
@@ -143,7 +148,7 @@ class Counter:
     grid: Grid
     count: Any
     ranges: Ranges | None
-    labels: dict[float | None, int]
+    labels: dict[Any, int]
     scores: tuple[np.ndarray, ...]
     fingerprinted: bool
 
@@ -158,6 +163,7 @@ class Counter:
             None if plane is None else np.zeros((plane.size, plane.size), dtype=np.int64),
             np.tile([np.inf, -np.inf], (k, 1)),
             dict.fromkeys(self.subject.atoms, 0),
+            dict.fromkeys(map(float, self.subject.events), 0),
             None,
             np.empty(0, dtype=np.uint64),
             (),
@@ -186,6 +192,8 @@ class Counter:
             strange = points[self.ranges.strange(cells[0] if at is None else at, p)]
         extremes = np.array([[c.min(), c.max()] if len(c) else [np.inf, -np.inf] for c in coordinates])
         hits = {point: int(np.count_nonzero(where)) for point, where in subject.at_atom(draw.x).items()}
+        labels = np.empty(0) if draw.event is None else draw.event
+        events = {float(label): int(np.count_nonzero(labels == label)) for label in subject.events}
         serial = Successions.of([s[c] for s, c in zip(self.scores, cells, strict=True)]) if len(points) else None
         remembered = self.fingerprinted and index * BATCH < KEPT
         prints = fingerprints(points) if remembered else np.empty(0, dtype=np.uint64)
@@ -193,12 +201,22 @@ class Counter:
         if draw.weight is not None:
             columns = draw.weight.reshape(len(draw.x), -1).T
             weights = tuple(Moments.of(np.ascontiguousarray(column)) for column in columns)
-        return Tally((index,), len(draw.x), fine, plane, extremes, hits, serial, prints, weights, strange[:4096], watch)
+        return Tally(
+            (index,), len(draw.x), fine, plane, extremes, hits, events, serial, prints, weights, strange[:4096], watch
+        )
 
 
 def _successions(state: list[Any]) -> Successions:
     sums, products, squares = (_unpacked(part) for part in state[0])
     return Successions(sums, products, squares, state[1], state[2])
+
+
+def _written(point: Any) -> Any:
+    return [float(number).hex() for number in point] if isinstance(point, tuple) else float(point).hex()
+
+
+def _read(point: Any) -> Any:
+    return tuple(map(float.fromhex, point)) if isinstance(point, list) else float.fromhex(point)
 
 
 def _packed(array: np.ndarray) -> dict[str, Any]:

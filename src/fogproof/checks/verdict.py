@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from fogproof.errors import FogproofError
+from fogproof.errors import FogproofError, UnsupportedError
 
 Outcome = Literal["rejected", "not rejected", "inconclusive"]
 
@@ -17,6 +17,12 @@ class RejectedError(FogproofError, AssertionError):
     """A check rejected its subject; the message explains. It is an `AssertionError`, so test runners show a failure."""
 
     code = "rejected"
+
+
+class InconclusiveError(FogproofError, AssertionError):
+    """A check could not tell; the message says what would decide. It is an `AssertionError` too: unproven is no pass."""
+
+    code = "inconclusive"
 
 
 @dataclass(frozen=True)
@@ -93,6 +99,8 @@ class Verdict:
 
     cause      the likely class of error, "" if nothing was rejected
     reproduce  one line that repeats the check
+    diagnosis  the cause as a sentence: what explains the misfit, with its fitted parameter and how much is left
+    unchecked  what the subject returns and nothing was declared for
     """
 
     findings: tuple[Finding, ...]
@@ -103,6 +111,8 @@ class Verdict:
     settings: dict[str, Any] = field(default_factory=dict)
     cause: str = ""
     reproduce: str = ""
+    diagnosis: str = ""
+    unchecked: tuple[str, ...] = ()
 
     @property
     def outcome(self) -> Outcome:
@@ -127,10 +137,23 @@ class Verdict:
         if self.outcome == "rejected":
             raise RejectedError(str(self))
 
+    def raise_unless_passed(self) -> None:
+        """Raise `RejectedError` or `InconclusiveError` with the whole explanation unless the outcome is "not rejected"."""
+        self.raise_if_rejected()
+        if self.outcome == "inconclusive":
+            raise InconclusiveError(str(self))
+
+    def __bool__(self) -> bool:
+        raise UnsupportedError(
+            f"a verdict is not true or false: it is rejected, not rejected or inconclusive (this one: {self.outcome});"
+            ' write verdict.raise_unless_passed(), or compare verdict.outcome == "not rejected"',
+            "verdict",
+        )
+
     def __str__(self) -> str:
         lines = [f"{self.outcome} (alpha {self.alpha:g}, {self.samples} samples, seed {self.seed})"]
         if self.cause:
-            lines.append(f"  likely: {self.cause}")
+            lines.append(f"  likely: {self.cause}" + (f"; {self.diagnosis}" if self.diagnosis else ""))
         order = {"rejected": 0, "inconclusive": 1, "not rejected": 2}
         for finding in sorted(self.findings, key=lambda f: order[f.outcome]):
             p = "" if finding.p_value is None else f" p = {finding.p_value:.3g}."
@@ -139,6 +162,7 @@ class Verdict:
             where = f"{where}." if where else ""
             size = f" Effect in {finding.interval}." if finding.interval and finding.outcome == "rejected" else ""
             lines.append(f"  {finding.outcome:12}  {finding.check}: {finding.message}.{where}{p}{size}{seen}")
+        lines += [f"  unchecked: {what}" for what in self.unchecked]
         if self.outcome != "not rejected" and self.reproduce:
             lines.append(f"  reproduce: {self.reproduce}")
         return "\n".join(lines)
@@ -157,6 +181,8 @@ class Verdict:
                 "resolution": self.resolution,
                 "cause": self.cause,
                 "reproduce": self.reproduce,
+                "diagnosis": self.diagnosis,
+                "unchecked": self.unchecked,
                 "findings": self.findings,
             }
         )

@@ -10,7 +10,7 @@ from fogproof.scene.lights import DirectionalLight, Environment, Light, PointLig
 from fogproof.scene.media import AnyMedium, Medium
 from fogproof.scene.occluders import Disk, Occluder, Sphere
 from fogproof.scene.opengl_fog import OpenGLFog
-from fogproof.scene.phase_functions import (
+from fogproof.scene.phase import (
     CornetteShanks,
     DoubleHenyeyGreenstein,
     Draine,
@@ -21,15 +21,16 @@ from fogproof.scene.phase_functions import (
     Mixture,
     Murky,
     PhaseFunction,
+    Ramp,
     Rayleigh,
     Schlick,
     Tabulated,
+    VaryingPhase,
 )
 from fogproof.scene.procedural import Procedural
 from fogproof.scene.rays import Ray
 from fogproof.scene.scenes import Scattering, Scene
 from fogproof.scene.shapes import Ball, Box, HalfSpace, Shape, Slab, Unbounded
-from fogproof.scene.varying_phase import Ramp, VaryingPhase
 from fogproof.scene.voxel_grid import VoxelGrid
 
 __all__ = [

@@ -9,8 +9,7 @@ import numpy as np
 
 from fogproof.errors import InvalidValueError
 from fogproof.scene.arrays import FloatArray
-from fogproof.scene.phase_functions import Isotropic
-from fogproof.scene.varying_phase import AnyPhaseField, require_phase
+from fogproof.scene.phase import AnyPhaseField, Isotropic, require_any_phase
 from fogproof.validate import Channels, as_float_array, channel_count, nonnegative_channels, require, unit_vectors
 
 
@@ -105,7 +104,7 @@ class PiecewiseConstantMedium:
             raise InvalidValueError("axis", "must be one vector [x, y, z]", self.axis)
         object.__setattr__(self, "axis", axis)
         set_cells(self, (boundaries.size - 1,), "one value a layer, len(boundaries) - 1 of them")
-        require_phase("phase", self.phase)
+        require_any_phase("phase", self.phase)
 
     @property
     def channels(self) -> int | None:
@@ -202,7 +201,7 @@ def _row(vectors: np.ndarray) -> Channels:
 def _set_common(medium: Any) -> None:
     object.__setattr__(medium, "albedo", albedo_channels(medium.albedo))
     object.__setattr__(medium, "emission", nonnegative_channels("emission", medium.emission, "W/(m^2 sr)"))
-    require_phase("phase", medium.phase)
+    require_any_phase("phase", medium.phase)
     _ = medium.channels
 
 

@@ -11,11 +11,10 @@ from typing import Annotated
 
 import numpy as np
 
-from fogproof.errors import InvalidValueError
 from fogproof.scene.graded_media import AnisotropicMedium, ExponentialMedium, LinearMedium, PiecewiseConstantMedium
 from fogproof.scene.kinds import ByKind
 from fogproof.scene.opengl_fog import OpenGLFog
-from fogproof.scene.phase_functions import HenyeyGreenstein, Isotropic, PhaseFunction, PhaseFunctionField, Rayleigh
+from fogproof.scene.phase import Isotropic, PhaseFunctionField, require_phase
 from fogproof.scene.procedural import Procedural
 from fogproof.scene.voxel_grid import VoxelGrid
 from fogproof.validate import Channels, channel_count, nonnegative_channels, require
@@ -40,13 +39,7 @@ class Medium:
         object.__setattr__(self, "sigma_a", nonnegative_channels("sigma_a", self.sigma_a, "1/m"))
         object.__setattr__(self, "sigma_s", nonnegative_channels("sigma_s", self.sigma_s, "1/m"))
         object.__setattr__(self, "emission", nonnegative_channels("emission", self.emission, "W/(m^2 sr)"))
-        if not isinstance(self.phase, PhaseFunction):
-            raise InvalidValueError(
-                "phase",
-                "must be a phase function",
-                self.phase,
-                f"one of {Isotropic()}, {HenyeyGreenstein(0.5)}, {Rayleigh()}",
-            )
+        require_phase("phase", self.phase)
         channel_count(sigma_a=self.sigma_a, sigma_s=self.sigma_s, emission=self.emission)
         with np.errstate(over="ignore"):
             require("sigma_t", self.sigma_t, np.isfinite(self.sigma_t), "= sigma_a + sigma_s must be finite [1/m]")

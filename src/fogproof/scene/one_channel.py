@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from fogproof.scene.graded_media import AnisotropicMedium, ExponentialMedium, LinearMedium, PiecewiseConstantMedium
-from fogproof.scene.lights import DirectionalLight, Environment, Light, PointLight, SpotLight
+from fogproof.scene.lights import strength, with_strength
 from fogproof.scene.media import AnyMedium, Medium
 from fogproof.scene.opengl_fog import OpenGLFog
 from fogproof.scene.procedural import Procedural
@@ -21,7 +21,7 @@ def one_channel(scene: Scene, c: int) -> Scene:
     return replace(
         scene,
         medium=medium_of_channel(scene.medium, c),
-        light=None if scene.light is None else _light(scene.light, c),
+        light=scene.light and with_strength(scene.light, _value(strength(scene.light), c)),
         ambient=_value(scene.ambient, c),
         background=_value(scene.background, c),
     )
@@ -59,16 +59,6 @@ def _graded(medium: Any, c: int, **more: Any) -> Any:
 def _graded_cells(medium: Any, axes: int, c: int) -> Any:
     values = {name: getattr(medium, name) for name in ("sigma_t", "albedo", "emission")}
     return replace(medium, **{name: v[..., c] if np.ndim(v) > axes else v for name, v in values.items()})
-
-
-def _light(light: Light, c: int) -> Light:
-    match light:
-        case PointLight() | SpotLight():
-            return replace(light, intensity=_value(light.intensity, c))
-        case DirectionalLight():
-            return replace(light, irradiance=_value(light.irradiance, c))
-    assert isinstance(light, Environment)
-    return replace(light, radiance=_value(light.radiance, c))
 
 
 def _value(value: Any, c: int) -> Any:

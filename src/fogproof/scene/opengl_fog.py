@@ -8,8 +8,7 @@ from typing import Literal, get_args
 from fogproof.errors import InvalidValueError
 from fogproof.scene.arrays import FloatArray
 from fogproof.scene.graded_media import albedo_channels
-from fogproof.scene.phase_functions import Isotropic
-from fogproof.scene.varying_phase import AnyPhaseField, require_phase
+from fogproof.scene.phase import AnyPhaseField, Isotropic, require_any_phase
 from fogproof.validate import Channels, channel_count, nonnegative_channels, number, points
 
 FogMode = Literal["linear", "exp", "exp2"]
@@ -56,7 +55,7 @@ class OpenGLFog:
         object.__setattr__(self, "eye", eye)
         object.__setattr__(self, "albedo", albedo_channels(self.albedo))
         object.__setattr__(self, "emission", nonnegative_channels("emission", self.emission, "W/(m^2 sr)"))
-        require_phase("phase", self.phase)
+        require_any_phase("phase", self.phase)
         _ = self.channels
 
     @property

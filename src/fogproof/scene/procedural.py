@@ -10,8 +10,7 @@ import numpy as np
 
 from fogproof.errors import InvalidValueError
 from fogproof.scene.graded_media import albedo_channels
-from fogproof.scene.phase_functions import Isotropic
-from fogproof.scene.varying_phase import AnyPhase, require_phase
+from fogproof.scene.phase import AnyPhase, Isotropic, require_any_phase
 from fogproof.validate import Channels, as_float_array, channel_count, nonnegative_channels, number, require
 
 Field = Callable[..., Any]
@@ -73,7 +72,7 @@ class Procedural:
             object.__setattr__(self, "albedo", albedo_channels(self.albedo))
         if not callable(self.emission):
             object.__setattr__(self, "emission", nonnegative_channels("emission", self.emission, "W/(m^2 sr)"))
-        require_phase("phase", self.phase)
+        require_any_phase("phase", self.phase)
         constants = {"albedo": self.albedo, "emission": self.emission}
         declared = (0.0,) * self.channels if self.channels else 0.0
         count = channel_count(sigma_t=declared, **{k: v for k, v in constants.items() if not callable(v)})

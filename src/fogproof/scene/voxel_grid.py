@@ -8,8 +8,7 @@ from typing import Literal, get_args
 from fogproof.errors import InvalidValueError
 from fogproof.scene.arrays import FloatArray
 from fogproof.scene.graded_media import cell_channels, set_cells
-from fogproof.scene.phase_functions import Isotropic
-from fogproof.scene.varying_phase import AnyPhaseField, require_phase
+from fogproof.scene.phase import AnyPhaseField, Isotropic, require_any_phase
 from fogproof.validate import as_float_array, points, require
 
 Interpolation = Literal["nearest", "trilinear"]
@@ -53,7 +52,7 @@ class VoxelGrid:
         if self.interpolation not in get_args(Interpolation):
             raise InvalidValueError("interpolation", "must be 'nearest' or 'trilinear'", self.interpolation)
         set_cells(self, sigma_t.shape[:3], "one value a voxel")
-        require_phase("phase", self.phase)
+        require_any_phase("phase", self.phase)
 
     @property
     def channels(self) -> int | None:

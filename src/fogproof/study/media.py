@@ -18,7 +18,7 @@ from fogproof.scene import AnyMedium, Isotropic, Procedural, VoxelGrid
 from fogproof.scene.arrays import FloatArray
 from fogproof.scene.kinds import ByKind
 from fogproof.scene.media import MEDIA
-from fogproof.scene.phase_functions import PhaseFunctionField
+from fogproof.scene.phase import PhaseFunctionField
 from fogproof.scene.volume_files import read_voxel_grid
 from fogproof.scene.voxel_grid import Interpolation
 from fogproof.validate import number

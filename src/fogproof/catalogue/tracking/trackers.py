@@ -10,8 +10,6 @@ import numpy as np
 
 from fogproof.analytic import transmittance
 from fogproof.catalogue.cases import Case, Drawn, EstimatorCase, Twin
-from fogproof.catalogue.tracking import majorant_blocks, ray_marching
-from fogproof.catalogue.tracking import spectral as spectral_trackers
 from fogproof.catalogue.tracking.scenes import (
     EXPONENTIAL,
     LINEAR,
@@ -278,5 +276,4 @@ def _ratio() -> list[Case]:
 
 def cases() -> list[Case]:
     """Return the cases of trackers."""
-    more = (majorant_blocks, spectral_trackers, ray_marching)
-    return [*_regular(), *_delta(), *_ratio(), *(case for group in more for case in group.cases())]
+    return [*_regular(), *_delta(), *_ratio()]

@@ -17,17 +17,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from fogproof.domains import (
-    Discrete,
     Domain,
     HalfLine,
     Interval,
     RealLine,
+    Rectangle,
     UnitDisk,
     UnitHemisphere,
     UnitSphere,
     UnitSquare,
 )
-from fogproof.errors import InvalidValueError
+from fogproof.errors import UnsupportedError
 
 Map = Callable[[np.ndarray], np.ndarray]
 
@@ -87,14 +87,16 @@ def chart_of(domain: Domain, pilot: np.ndarray, axis: tuple[float, float, float]
             return _disk()
         case UnitSquare():
             return unit_square(("x", "y"))
+        case Rectangle((x0, y0), (x1, y1)):
+            sides = (Axis("x", x0, x1), Axis("y", y0, y1))
+            return Chart(sides, _same, lambda x: (x[:, 0], x[:, 1]), _ones)
         case Interval(a, b):
             return Chart((Axis("x", a, b),), lambda c: c[:, 0], lambda x: (x,), _ones)
         case HalfLine(a):
             return _half_line(a, float(np.median(pilot - a)) if len(pilot) else 1.0)
         case RealLine():
             return _real_line(*_center_and_spread(pilot))
-        case Discrete():
-            raise InvalidValueError("domain", "must be continuous to have a chart", domain)
+    raise UnsupportedError(f"no quadrature is known on {domain}")
 
 
 def unit_square(labels: tuple[str, str]) -> Chart:

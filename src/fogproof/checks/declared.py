@@ -1,0 +1,96 @@
+"""What a caller declares about a sampler: arguments made clean or refused with the fix, and what nothing declared can check."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any, get_args
+
+import numpy as np
+
+from fogproof.checks.streams import fresh_seed
+from fogproof.checks.subject import Precision, Subject
+from fogproof.domains import Discrete, Domain
+from fogproof.errors import InvalidValueError
+from fogproof.validate import number, unit_vectors
+
+_LEAST_ALPHA = 1e-100  # tails of the tests' laws are accurate some way beyond
+
+
+def declared(
+    subject: Subject, resolution: float | None, samples: Any, alpha: float, seed: Any
+) -> tuple[Subject, int, int]:
+    """Return the subject, the number of samples and the seed, clean, or raise `InvalidValueError` on the first bad argument."""
+    for name, function in (
+        ("sample", subject.sample),
+        ("pdf", subject.pdf),
+        ("cdf", subject.cdf),
+        ("eval", subject.eval),
+    ):
+        if function is not None and not callable(function):
+            raise InvalidValueError(name, "must be a function", function)
+    if isinstance(subject.domain, type):
+        raise InvalidValueError("domain", "must be a domain", subject.domain, f"write {subject.domain.__name__}(...)")
+    if not isinstance(subject.domain, Domain):
+        raise InvalidValueError("domain", "must be one of fogproof.domains, or have its parts", subject.domain)
+    dimensions = subject.dimensions
+    if dimensions is not None:
+        dimensions = whole("dimensions", dimensions, 1, "or None for sample(rng, n)")
+    if subject.precision not in get_args(Precision):
+        raise InvalidValueError("precision", "must be 'float64' or 'float32'", subject.precision)
+    if subject.uniform_bits is not None:
+        whole("uniform_bits", subject.uniform_bits, 8, "53 are those of double precision")
+    number("alpha", alpha, f"must lie in [{_LEAST_ALPHA:g}, 1)", _LEAST_ALPHA, np.nextafter(1, 0))
+    if resolution is not None:
+        number("resolution", resolution, "must lie in (0, 1)", 0, 1, open_ends=True)
+    if subject.atoms and isinstance(subject.domain, Discrete):
+        raise InvalidValueError("atoms", "need a density: on Discrete the pdf is a probability", subject.domain)
+    for point in subject.atoms:
+        if np.shape(point) != subject.domain.shape:
+            raise InvalidValueError("atoms", f"must be points of {subject.domain}", point)
+    _probabilities("atoms", subject.atoms)
+    _probabilities("events", subject.events)
+    events = sum(subject.events.values())
+    if subject.events and abs(events - 1) > 1e-9:
+        raise InvalidValueError("events", "must have probabilities that sum to 1", events, "declare every label")
+    axis = subject.axis
+    if axis is not None:
+        axis = tuple(unit_vectors("axis", axis).tolist())
+    if subject.mean_cosine is not None:
+        if axis is None:
+            raise InvalidValueError("axis", "must be given with mean_cosine", axis)
+        number("mean_cosine", subject.mean_cosine, "must lie in [-1, 1]", -1, 1)
+    return (
+        replace(subject, dimensions=dimensions, axis=axis),
+        whole("samples", samples, 100),
+        fresh_seed() if seed is None else whole("seed", seed, 0, "any whole number >= 0, or None for a fresh one"),
+    )
+
+
+def whole(name: str, value: Any, least: int, fix: str = "") -> int:
+    """Return a whole number >= `least`, whatever type it comes in: 1e6 is one million."""
+    rule = f"must be a whole number >= {least}"
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, float, np.integer, np.floating)):
+        raise InvalidValueError(name, rule, value, fix)
+    if abs(value) == np.inf or value != value or value != int(value) or value < least:
+        raise InvalidValueError(name, rule, value, fix)
+    return int(value)
+
+
+def _probabilities(name: str, table: Mapping[Any, float]) -> None:
+    for point, probability in table.items():
+        number(f"{name}[{point!r}]", probability, "must be a probability in [0, 1]", 0, 1)
+
+
+def unchecked(subject: Subject, channels: int, labels: bool) -> tuple[str, ...]:
+    """Return what a sampler returns and nothing was declared for, in words.
+
+    channels  of the returned weights, 0 if there are none
+    labels    whether event labels are returned
+    """
+    found = []
+    if channels and subject.eval is None and subject.albedo is None:
+        found.append("weights (declare eval, albedo, or both)")
+    if labels and not subject.events and not subject.atoms:
+        found.append("event labels (declare events={label: probability})")
+    return tuple(found)

@@ -1,0 +1,103 @@
+"""What a sampler does with extreme uniforms: 0, the smallest denormal, 1/2 and the largest number below 1.
+
+In up to four dimensions all their combinations are tried; in more, one axis at a time beside ordinary uniforms, and corners. The
+answers must keep every promise that ordinary samples keep; a density of 0 is allowed at the very edge of its support alone.
+"""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+
+from fogproof.checks.promises import Watch, at_any_atom, inside
+from fogproof.checks.subject import Subject
+from fogproof.checks.verdict import Finding
+from fogproof.contracts import Draw
+from fogproof.domains import Discrete
+from fogproof.errors import SubjectError, shorten
+
+_NAME, _CAUSE = "edge uniforms", "edge of the uniforms"
+_ALL_COMBINATIONS = 4  # dimensions up to which all are tried
+_CORNERS = 64  # tried beyond
+_INWARDS = 2.0**-20  # from an edge: what the sampler does there is no edge case
+_TOWARDS = (2.0**-8, 2.0**-16, 2.0**-24, 2.0**-32)  # of the way to that point, where the support must have begun
+
+
+def edge_uniforms(subject: Subject, labels: dict[float | None, int]) -> Finding:
+    """Return what is found at the edges; `labels` are the usual event labels of each place."""
+    u, tried = _edges(subject)
+    try:
+        with np.errstate(all="ignore"):
+            draw = subject.draw_at(u.copy())
+            watch = Watch(subject, labels)
+            watch.look(draw)
+            holes = _holes(subject, u, draw) if "positive pdf" in watch.broken else np.empty(0, dtype=int)
+    except SubjectError as error:
+        return Finding(_NAME, "rejected", f"with {tried}, {error}", cause=_CAUSE)
+    watch.broken.pop("positive pdf", None)
+    for name, (_, example) in watch.broken.items():
+        return Finding(
+            _NAME, "rejected", f"with {tried}, {name}: {example}{_which(subject, u, draw, name)}", cause=_CAUSE
+        )
+    if len(holes):
+        i = int(holes[0])
+        message = (
+            f"u = {shorten(u[i])} gives x = {shorten(draw.x[i])}, where the pdf is {subject.density(draw.x[[i]])[0]:g}"
+        )
+        return Finding(_NAME, "rejected", f"{message} and not at the edge of its support", cause=_CAUSE)
+    return Finding(_NAME, "not rejected", f"all promises are kept with {tried}")
+
+
+def no_edge_uniforms() -> Finding:
+    """Return the word that is due where a sampler draws its own uniforms."""
+    message = (
+        "not tried: with dimensions=None the sampler draws its own; give sample(u) to have 0 and 1 - ulp put to it"
+    )
+    return Finding(_NAME, "not rejected", message)
+
+
+def _edges(subject: Subject) -> tuple[np.ndarray, str]:
+    """Return (m, dimensions) uniforms, and in words what they are."""
+    kind = np.float32 if subject.precision == "float32" else np.float64
+    edges = np.array([0.0, np.finfo(kind).smallest_subnormal, 0.5, np.nextafter(kind(1), kind(0))], dtype=kind)
+    d = subject.dimensions
+    assert d is not None
+    if d <= _ALL_COMBINATIONS:
+        u = np.array(list(itertools.product(edges, repeat=d)), dtype=kind)
+        return u, f"all {len(u)} combinations of 0, denormal, 1/2 and 1 - ulp"
+    rng = np.random.default_rng(d)
+    rows = [np.full((1, d), edge) for edge in edges]
+    rows.append(edges[[0, -1]][rng.integers(0, 2, (_CORNERS, d))])
+    for axis in range(d):
+        row = rng.random((len(edges), d), dtype=kind)
+        row[:, axis] = edges
+        rows.append(row)
+    return np.concatenate(rows).astype(
+        kind
+    ), f"0, denormal, 1/2 and 1 - ulp on each of {d} axes and at {_CORNERS} corners"
+
+
+def _which(subject: Subject, u: np.ndarray, draw: Draw, name: str) -> str:
+    bad = np.flatnonzero(~inside(subject, draw)) if name == "domain" else np.empty(0)
+    return f", from u = {shorten(u[bad[0]])}" if len(bad) else ""
+
+
+def _holes(subject: Subject, u: np.ndarray, draw: Draw) -> np.ndarray:
+    """Return which answers have a density of 0 (or none) that does not begin right beside them."""
+    good = inside(subject, draw) & ~at_any_atom(subject, draw.x)
+    if draw.valid is not None:
+        good &= draw.valid
+    p = np.full(len(u), np.nan)
+    p[good] = subject.density(draw.x[good])
+    bad = np.flatnonzero(good & ~(p > 0))
+    if isinstance(subject.domain, Discrete) or not len(bad):
+        return bad
+    inwards = np.clip(u[bad], _INWARDS, 1 - _INWARDS).astype(u.dtype)
+    near = subject.draw_at(inwards).x
+    law, half = subject.domain.law(near), np.full((len(bad), 1), 0.5)
+    begin, end = law.coordinates(draw.x[bad], half), law.coordinates(near, half)
+    begun = np.zeros(len(bad), dtype=bool)
+    for share in _TOWARDS:
+        begun |= subject.density(law.place(np.minimum(begin + share * (end - begin), 1 - 2.0**-53))) > 0
+    return bad[~begun]

@@ -1,0 +1,79 @@
+"""Which statistical tests a subject meets: it depends on what the subject declares, never on its samples."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from fogproof.checks.escalation import Test
+from fogproof.checks.normalisation import FLOOR
+from fogproof.checks.prepared import Prepared
+from fogproof.checks.statistics.goodness import binomial, chi_square, chi_square_along, chi_square_sparse, kolmogorov
+from fogproof.checks.statistics.means import Moments, mean_test
+from fogproof.checks.statistics.repeats import repeats_test
+from fogproof.checks.statistics.scan import blocks, scan, scan_ends, scan_plane
+from fogproof.checks.statistics.serial import serial_test
+from fogproof.checks.statistics.smooth import cross, smooth
+from fogproof.checks.subject import named
+from fogproof.checks.tally import Tally
+from fogproof.checks.verdict import Finding
+
+_CELLS = 512  # of the chi-square test along an axis
+
+
+def tests_of(prepared: Prepared, tally: Tally) -> list[Test]:
+    """Return the statistical tests of a subject; which ones depends on what it declares, not on the samples."""
+    subject, grid = prepared.subject, prepared.grid
+    tests: list[Test] = []
+
+    def add(kind: str, run: Callable[..., Finding], name: str, *arguments: Any) -> None:
+        tests.append(Test(kind, partial(run, name, *arguments)))
+
+    several = len(grid.marginals) > 1
+    for axis, (marginal, counts) in enumerate(zip(grid.marginals, tally.fine, strict=True)):
+        of, along = (f" of {marginal.label}", f" in {marginal.label}") if several else ("", "")
+        add("distribution", kolmogorov, f"distribution{of}", marginal, counts)
+        add("smooth", smooth, f"smooth components{along}", marginal, counts)
+        add("chi-square", chi_square_along, f"chi-square{along}", marginal, counts, _CELLS)
+        add("scan", scan, f"scan{along}", marginal, counts)
+        if marginal.ends:
+            low, high = tally.extremes[axis]
+            add("ends", scan_ends, f"ends{of}", marginal, counts, low, high)
+    if grid.plane is not None and tally.plane is not None:
+        plane, coarse = grid.plane, blocks(tally.plane, len(grid.plane.mass))
+        labels = (grid.marginals[0].label, grid.marginals[1].label)
+        add("joint", chi_square, "chi-square, joint", coarse, plane.mass, plane.error, plane.blur(len(coarse)))
+        add("dependence", cross, "dependence of the axes", labels, plane, coarse)
+        add("patches", scan_plane, "scan for patches", labels, plane, tally.plane)
+        if plane.independent:
+            shares, blur = plane.shares[0][:, None] * plane.shares[1], plane.blur(plane.size)
+            fine = tally.plane.ravel(), shares.ravel(), blur.ravel()
+            add("fine joint", chi_square_sparse, "chi-square, fine joint", *fine)
+    add("serial correlation", serial_test, "serial correlation", tally.serial)
+    if prepared.counter.fingerprinted:
+        add("repeated points", repeats_test, "repeated points", tally.prints, prepared.expected_repeats)
+    n = max(tally.drawn, 1)
+    wrong_atom = "wrong probability of an atom"
+    rest, slack = 1 - sum(subject.atoms.values()), FLOOR[subject.precision]
+    what, cause = "probability of the continuous part", wrong_atom if subject.atoms else "lost samples"
+    add("lost samples", binomial, "continuous part", what, tally.continuous, n, rest - slack, rest + slack, cause)
+    for label, q in subject.events.items():
+        what, hits = f"probability of the event {label:g}", tally.events[float(label)]
+        add("event", binomial, "declared event", what, hits, n, q * (1 - 1e-15), q * (1 + 1e-15), "wrong event label")
+    for point, q in subject.atoms.items():
+        what = f"probability of the atom at {named(point)}"
+        add("atom", binomial, "atom", what, tally.atoms[point], n, q * (1 - 1e-15), q * (1 + 1e-15), wrong_atom)
+    if prepared.pilot.channels and subject.albedo is not None:
+        claims = np.broadcast_to(np.asarray(subject.albedo, dtype=float), (prepared.pilot.channels,))
+        data = tally.weights or (Moments(),) * len(claims)
+        for channel, claimed in enumerate(claims.tolist()):
+            name = "mean weight" if len(claims) == 1 else f"mean weight of channel {channel}"
+            add("mean weight", _mean_weight, name, data[channel], claimed)
+    return tests
+
+
+def _mean_weight(name: str, data: Moments, claimed: float, alpha: float) -> Finding:
+    return mean_test(name, name, data, claimed, 1e-6 * abs(claimed), alpha, "wrong weight")

@@ -1,0 +1,57 @@
+"""What a domain gives: which points are its own, their measure, and one known law on it.
+
+The known law is a bijection with the unit cube: uniform numbers placed by it are points of the law. Its coordinates are what
+cells are cut in, its density is what an unknown density is held against. It need not be like any sampler's law; it must only reach
+every point.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Law:
+    """A known law on a domain of k coordinates.
+
+    axes         k names of the coordinates
+    place        (n, k) uniform numbers in [0, 1) -> n points of the law
+    coordinates  n points and (n, k) numbers in [0, 1) -> (n, k) in [0, 1], the inverse of `place`; where single points have
+                 probability, the numbers say where in the interval of its point each one lies, elsewhere they are not looked at
+    density      n points -> (n,) density of the law in the measure of the domain, > 0
+    stepped      whether single points have probability
+    """
+
+    axes: tuple[str, ...]
+    place: Callable[[np.ndarray], np.ndarray]
+    coordinates: Callable[[np.ndarray, np.ndarray], np.ndarray]
+    density: Callable[[np.ndarray], np.ndarray]
+    stepped: bool = False
+
+
+@runtime_checkable
+class Domain(Protocol):
+    """Where samples live, and the measure that their density refers to. Any object with these parts is a domain."""
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Of one point: () for a number, (k,) for k numbers."""
+
+    @property
+    def measure(self) -> float:
+        """Of the whole domain; infinite, or NaN where it is not known."""
+
+    def contains(self, x: np.ndarray, slack: float) -> np.ndarray:
+        """Return (n,) which points lie in the domain, up to rounding errors of relative size `slack`; NaN never does."""
+
+    def law(self, pilot: np.ndarray) -> Law:
+        """Return a known law; on unbounded domains the points `pilot` set its scale."""
+
+
+def squared(x: np.ndarray) -> np.ndarray:
+    """Return (n,) the squared lengths of vectors (n, k)."""
+    return np.einsum("...i,...i->...", x, x)

@@ -1,0 +1,148 @@
+"""The real line and its parts.
+
+Unbounded lines have a known law with tails as heavy as those of the pilot at least: the log-logistic law, whose cdf is a rational
+function of a power, F(t) = t^b / (1 + t^b) of the distance t from the end or the centre in units of the median.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from fogproof.domains.law import Law
+from fogproof.errors import InvalidValueError
+from fogproof.validate import number
+
+_LEAST_INDEX = 0.02  # of a tail: a power less is not told from it in floating point
+_QUARTILES = 2 * math.log(3.0)  # distance of the quartiles of log t, times b
+
+
+@dataclass(frozen=True)
+class Tail:
+    """The log-logistic law of a distance t >= 0: scale m, index b <= 1."""
+
+    m: float = 1.0
+    b: float = 1.0
+
+    @staticmethod
+    def of(t: np.ndarray) -> Tail:
+        """Return the law with the median and, in logarithms, at least the spread of the distances t (n,)."""
+        t = t[np.isfinite(t) & (t > 0)]
+        if len(t) < 4:
+            return Tail()
+        low, middle, high = np.quantile(np.log(t), [0.25, 0.5, 0.75])
+        index = _QUARTILES / max(high - low, _QUARTILES)
+        return Tail(float(np.exp(middle)), max(float(index), _LEAST_INDEX))
+
+    def cdf(self, t: np.ndarray) -> np.ndarray:
+        """Return F(t)."""
+        with np.errstate(over="ignore", divide="ignore"):
+            return np.asarray(1 / (1 + (t / self.m) ** -self.b))
+
+    def quantile(self, u: np.ndarray) -> np.ndarray:
+        """Return t with F(t) = u; numbers beyond the largest double become it."""
+        with np.errstate(over="ignore", divide="ignore"):
+            return np.asarray(np.minimum(self.m * (u / (1 - u)) ** (1 / self.b), np.finfo(float).max))
+
+    def density(self, t: np.ndarray) -> np.ndarray:
+        """Return F'(t), finite at t = 0 because a distance is no smaller than the smallest normal number."""
+        with np.errstate(over="ignore", under="ignore"):
+            s = np.maximum(t / self.m, np.finfo(float).tiny)
+            power = s**-self.b
+            return np.asarray(self.b / (self.m * s * (1 + power) * (1 + 1 / power)))
+
+
+def _bounded(low: float, high: float, x: np.ndarray, slack: float) -> np.ndarray:
+    scale = slack * max((abs(end) for end in (low, high) if math.isfinite(end)), default=0.0)
+    return np.isfinite(x) & (x >= low - scale) & (x <= high + scale)
+
+
+@dataclass(frozen=True)
+class Interval:
+    """The interval [a, b], both ends finite; the pdf is per unit length."""
+
+    a: float
+    b: float
+
+    shape = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "a", number("a", self.a, "must be finite", fix="use HalfLine or RealLine"))
+        object.__setattr__(self, "b", number("b", self.b, "must be finite", fix="use HalfLine or RealLine"))
+        if not self.a < self.b:
+            raise InvalidValueError("b", f"must be greater than a = {self.a}", self.b)
+
+    @property
+    def measure(self) -> float:
+        """The length."""
+        return self.b - self.a
+
+    def contains(self, x: np.ndarray, slack: float) -> np.ndarray:
+        """Return which numbers lie between the ends."""
+        return _bounded(self.a, self.b, x, slack)
+
+    def law(self, pilot: np.ndarray) -> Law:
+        """Return the uniform law."""
+        a, length = self.a, self.b - self.a
+        return Law(
+            ("x",),
+            lambda u: a + length * u[:, 0],
+            lambda x, v: np.clip((x - a) / length, 0.0, 1.0)[:, None],
+            lambda x: np.full(len(x), 1 / length),
+        )
+
+
+@dataclass(frozen=True)
+class HalfLine:
+    """The half line [a, inf); the pdf is per unit length."""
+
+    a: float = 0.0
+
+    shape = ()
+    measure = math.inf
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "a", number("a", self.a, "must be finite", fix="use RealLine"))
+
+    def contains(self, x: np.ndarray, slack: float) -> np.ndarray:
+        """Return which numbers are finite and no less than a."""
+        return _bounded(self.a, math.inf, x, slack)
+
+    def law(self, pilot: np.ndarray) -> Law:
+        """Return a log-logistic law of the distance from a."""
+        a, tail = self.a, Tail.of(pilot - self.a)
+        return Law(
+            ("x",),
+            lambda u: a + tail.quantile(u[:, 0]),
+            lambda x, v: tail.cdf(np.maximum(x - a, 0.0))[:, None],
+            lambda x: tail.density(np.maximum(x - a, 0.0)),
+        )
+
+
+@dataclass(frozen=True)
+class RealLine:
+    """All real numbers; the pdf is per unit length."""
+
+    shape = ()
+    measure = math.inf
+
+    def contains(self, x: np.ndarray, slack: float) -> np.ndarray:
+        """Return which numbers are finite."""
+        return np.isfinite(x)
+
+    def law(self, pilot: np.ndarray) -> Law:
+        """Return a log-logistic law of the distance from the pilot's median, on both sides alike."""
+        middle = float(np.median(pilot)) if len(pilot) else 0.0
+        tail = Tail.of(np.abs(pilot - middle))
+
+        def place(u: np.ndarray) -> np.ndarray:
+            s = 2 * u[:, 0] - 1
+            return middle + np.sign(s) * tail.quantile(np.abs(s))
+
+        def coordinates(x: np.ndarray, v: np.ndarray) -> np.ndarray:
+            t = x - middle
+            return (0.5 + 0.5 * np.sign(t) * tail.cdf(np.abs(t)))[:, None]
+
+        return Law(("x",), place, coordinates, lambda x: 0.5 * tail.density(np.abs(x - middle)))

@@ -1,0 +1,99 @@
+"""Directions: the sphere, the upper hemisphere, and any part of the sphere that its user can recognise."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from fogproof.domains.law import Law, squared
+
+TURN = 2 * np.pi
+
+
+def azimuth(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Return (n,) the angle about z as a share of the turn, in [0, 1], from -x over -y."""
+    return np.clip(np.arctan2(y, x) / TURN + 0.5, 0.0, 1.0)
+
+
+def direction(versine: np.ndarray, share: np.ndarray) -> np.ndarray:
+    """Return (n, 3) unit vectors with 1 - z = versine in [0, 2] and the given share of the turn about z."""
+    sine, phi = np.sqrt(np.maximum(versine * (2 - versine), 0.0)), TURN * (share - 0.5)
+    return np.stack([sine * np.cos(phi), sine * np.sin(phi), 1 - versine], axis=-1)
+
+
+def versine(x: np.ndarray) -> np.ndarray:
+    """Return (n,) 1 - z of unit vectors (n, 3), without loss near +z, whatever the rounding of their length."""
+    small = (x[:, 0] ** 2 + x[:, 1] ** 2) / (1 + np.abs(x[:, 2]))
+    return np.where(x[:, 2] < 0, 2 - small, small)
+
+
+def cap(highest: float) -> Law:
+    """Return the uniform law on the directions with 1 - z <= highest."""
+    return Law(
+        ("mu", "phi"),
+        lambda u: direction(highest * u[:, 0], u[:, 1]),
+        lambda x, v: np.stack([np.clip(versine(x) / highest, 0.0, 1.0), azimuth(x[:, 0], x[:, 1])], axis=-1),
+        lambda x: np.full(len(x), 1 / (TURN * highest)),
+    )
+
+
+@dataclass(frozen=True)
+class UnitSphere:
+    """All directions; the pdf is per steradian."""
+
+    shape = (3,)
+    measure = 2 * TURN
+
+    def contains(self, x: np.ndarray, slack: float) -> np.ndarray:
+        """Return which vectors have length 1."""
+        return np.abs(squared(x) - 1) <= 2 * slack
+
+    def law(self, pilot: np.ndarray) -> Law:
+        """Return the uniform law."""
+        return cap(2.0)
+
+
+@dataclass(frozen=True)
+class UnitHemisphere:
+    """Directions with z >= 0; the pdf is per steradian."""
+
+    shape = (3,)
+    measure = TURN
+
+    def contains(self, x: np.ndarray, slack: float) -> np.ndarray:
+        """Return which vectors have length 1 and do not point down."""
+        return (np.abs(squared(x) - 1) <= 2 * slack) & (x[..., 2] >= -slack)
+
+    def law(self, pilot: np.ndarray) -> Law:
+        """Return the uniform law."""
+        return cap(1.0)
+
+
+@dataclass(frozen=True)
+class SpherePart:
+    """The directions that a function of the user's recognises; the pdf is per steradian.
+
+    inside  (n, 3) unit vectors -> (n,) bool
+    solid_angle  [sr], if it is known
+    """
+
+    inside: Callable[[np.ndarray], np.ndarray]
+    solid_angle: float = math.nan
+
+    shape = (3,)
+
+    @property
+    def measure(self) -> float:
+        """The solid angle."""
+        return self.solid_angle
+
+    def contains(self, x: np.ndarray, slack: float) -> np.ndarray:
+        """Return which vectors have length 1 and are recognised."""
+        return UnitSphere().contains(x, slack) & np.asarray(self.inside(x), dtype=bool)
+
+    def law(self, pilot: np.ndarray) -> Law:
+        """Return the uniform law on the whole sphere."""
+        return cap(2.0)

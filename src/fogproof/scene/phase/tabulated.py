@@ -1,0 +1,56 @@
+"""A phase function from a table."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from fogproof.errors import InvalidValueError
+from fogproof.scene.phase.phase_function import PhaseFunction
+from fogproof.validate import as_float_array, require
+
+
+@dataclass(frozen=True)
+class Tabulated(PhaseFunction):
+    """Linear between `values` [1/sr] at increasing `cosines` from -1 to 1.
+
+    The values must be normalised, 2 pi int_-1^1 f dmu = 1, to 1e-9; what remains is divided out.
+    `Tabulated.normalised` scales values that are not.
+    """
+
+    cosines: tuple[float, ...]
+    values: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        total = _integral(self.cosines, self.values)
+        if not abs(total - 1) <= 1e-9:
+            rule = "must integrate to 1 over the sphere"
+            raise InvalidValueError(
+                "values", rule, total, "divide them by that, or use Tabulated.normalised(cosines, values)"
+            )
+        object.__setattr__(self, "cosines", tuple(as_float_array("cosines", self.cosines).tolist()))
+        object.__setattr__(self, "values", tuple(as_float_array("values", self.values).tolist()))
+
+    @classmethod
+    def normalised(cls, cosines: Any, values: Any) -> Tabulated:
+        """Return the function proportional to the piecewise linear one through `values` at `cosines`."""
+        total = _integral(cosines, values)
+        if not 0 < total < np.inf:
+            raise InvalidValueError("values", "must have a positive finite integral", total)
+        return cls(cosines, tuple((as_float_array("values", values) / total).tolist()))
+
+
+def _integral(cosines: Any, values: Any) -> float:
+    """Return 2 pi int f dmu of a table whose shape and signs have been checked."""
+    c, f = as_float_array("cosines", cosines), as_float_array("values", values)
+    if c.ndim != 1 or c.size < 2:
+        raise InvalidValueError("cosines", "must be a list of at least two numbers", cosines)
+    require("cosines", c, np.isfinite(c), "must be finite")
+    if c[0] != -1 or c[-1] != 1 or not (np.diff(c) > 0).all():
+        raise InvalidValueError("cosines", "must increase from -1 to 1", cosines)
+    if f.shape != c.shape:
+        raise InvalidValueError("values", "must be one number a cosine", values, f"there are {c.size} cosines")
+    require("values", f, np.isfinite(f) & (f >= 0), "must be finite and >= 0 [1/sr]")
+    return float(np.pi * np.sum(np.diff(c) * (f[1:] + f[:-1])))

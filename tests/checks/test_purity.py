@@ -1,0 +1,176 @@
+"""A sampler that is no pure function of its uniforms is found out and named; a right one is not, whatever its calls look like."""
+
+import numpy as np
+import pytest
+
+from fogproof import Discrete, Draw, HalfLine, Interval, UnitSphere, check_sampler
+
+UNIT = Interval(0, 1)
+
+
+def ones(x):
+    return np.ones(len(x))
+
+
+class Stale:
+    """Samples with the exponent that the call before it left behind."""
+
+    def __init__(self):
+        self.exponent = 1.0
+
+    def __call__(self, u):
+        exponent, self.exponent = self.exponent, 1 + u[-1, 0]
+        return u[:, 0] ** exponent
+
+
+def in_place(u):
+    u *= 0.5
+    return 2 * u[:, 0]
+
+
+def own_generator(generator):
+    return lambda u: generator.random(len(u))
+
+
+def newton(u):
+    """Solve x + sin(x) / 4 = c u for all rows at once, until the slowest is there."""
+    c, x = 1 + 0.25 * np.sin(1.0), u[:, 0].copy()
+    for _ in range(50):
+        step = (x + 0.25 * np.sin(x) - c * u[:, 0]) / (1 + 0.25 * np.cos(x))
+        x = x - step
+        if np.all(np.abs(step) < 1e-9):
+            break
+    return np.clip(x, 0, 1)
+
+
+IMPURE = {
+    "hidden generator": (lambda: own_generator(np.random.default_rng(9)), "hidden state"),
+    "parameter of the call before": (Stale, "hidden state"),
+    "seeds itself": (lambda: lambda u: np.random.default_rng(3).random(len(u)), "ignores its uniforms"),
+    "works in place": (lambda: in_place, "writes into its uniforms"),
+    "one row too late": (lambda: lambda u: np.roll(u[:, 0], 1), "order of the rows"),
+    "stratified over the call": (lambda: lambda u: (np.arange(len(u)) + u[:, 0]) / len(u), "order of the rows"),
+    "other law in small calls": (lambda: lambda u: u[:, 0] if len(u) > 100 else u[:, 0] ** 2, "size of the call"),
+    "other law in calls of one": (lambda: lambda u: u[:, 0] if len(u) > 1 else u[:, 0] ** 2, "size of the call"),
+    "fails in calls of one": (lambda: lambda u: np.squeeze(u), "size of the call"),
+    "weights by the call": (lambda: lambda u: Draw(u[:, 0], weight=np.full(len(u), 1e4 / len(u))), "size of the call"),
+}
+
+
+@pytest.mark.parametrize("name", IMPURE)
+def test_impure_samplers_are_named(name):
+    make, cause = IMPURE[name]
+    verdict = check_sampler(make(), ones, UNIT, dimensions=1, samples=20_000)
+    finding = next(f for f in verdict.findings if f.check == "function of its uniforms")
+    assert finding.outcome == "rejected", str(verdict)
+    assert verdict.cause == cause, str(verdict)
+
+
+def test_rounding_and_unused_columns_are_no_fault():
+    scale = 1 + 0.25 * np.sin(1.0)
+    verdict = check_sampler(newton, lambda x: (1 + 0.25 * np.cos(x)) / scale, UNIT, dimensions=2, samples=20_000)
+    finding = next(f for f in verdict.findings if f.check == "function of its uniforms")
+    assert verdict.outcome == "not rejected", str(verdict)
+    assert finding.message.endswith("depends on: 1")
+
+
+def steps(u):
+    """-log u: infinite for u = 0, in five dimensions of which one is used."""
+    return -np.log(u[:, 3])
+
+
+def empty_segment(u):
+    """The medium begins at x = 1, and u = 0 is found in the empty space before it."""
+    return np.where(u[:, 0] == 0, 0.0, 1 - np.log1p(-u[:, 0]))
+
+
+def table(probabilities):
+    p = np.array(probabilities)
+    return {
+        "sample": lambda u: np.searchsorted(np.cumsum(p), u[:, 0], side="left"),
+        "pdf": lambda i: p[i.astype(int)],
+        "domain": Discrete(len(p)),
+    }
+
+
+def returning(**parts):
+    return lambda u: Draw(u[:, 0], **{name: part(u[:, 0]) for name, part in parts.items()})
+
+
+EDGES = {
+    "log of zero in five dimensions": ({"sample": steps, "pdf": lambda x: np.exp(-x), "domain": HalfLine(0)}, 5),
+    "scatters in empty space": (
+        {"sample": empty_segment, "pdf": lambda x: np.where(x >= 1, np.exp(1 - np.maximum(x, 1)), 0.0), "domain": HalfLine(0)}, 1),
+    "an event of probability 0": (table([0, 0.5, 0.5]), 1),
+    "returned pdf infinite": ({"sample": returning(pdf=lambda x: np.where(x == 0, np.inf, 1.0))}, 1),
+    "weight not a number": ({"sample": returning(weight=lambda x: np.where(x == 0, np.nan, 1.0))}, 1),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", EDGES)
+def test_edge_uniforms_keep_every_promise(name):
+    subject, dimensions = EDGES[name]
+    arguments = {"sample": lambda u: u[:, 0], "pdf": ones, "domain": UNIT, **subject}
+    sample, pdf, domain = (arguments.pop(key) for key in ("sample", "pdf", "domain"))
+    verdict = check_sampler(sample, pdf, domain, dimensions=dimensions, samples=20_000)
+    assert {f.check for f in verdict.findings if f.outcome == "rejected"} == {"edge uniforms"}, str(verdict)
+    assert verdict.cause == "edge of the uniforms"
+
+
+SOUND = {
+    "density 0 at its own edge": (lambda u: np.sqrt(u[:, 0]), lambda x: 2 * x, UNIT, 1),
+    "a fifth root": (lambda u: u[:, 0] ** 0.2, lambda x: 5 * x**4, UNIT, 1),
+    "density infinite at its edge": (lambda u: u[:, 0] ** 2, lambda x: 0.5 / np.sqrt(x), UNIT, 1),
+    "eleven dimensions": (lambda u: u[:, 10], ones, UNIT, 11),
+    "weight known in closed form": (
+        lambda u: Draw(np.sqrt(u[:, 0]), weight=np.full(len(u), 0.5)), lambda x: 2 * x, UNIT, 1),
+    "its own generator": (lambda rng, n: rng.random(n), ones, UNIT, None),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", SOUND)
+def test_what_is_right_at_the_edges_is_left_alone(name):
+    sample, pdf, domain, dimensions = SOUND[name]
+    options = {"eval": lambda x: x, "albedo": 0.5} if name.startswith("weight") else {}
+    verdict = check_sampler(sample, pdf, domain, dimensions=dimensions, samples=20_000, alpha=1e-9, **options)
+    assert not [f for f in verdict.findings if f.outcome == "rejected"], str(verdict)
+    finding = next(f for f in verdict.findings if f.check == "edge uniforms")
+    assert ("dimensions=None" in finding.message) == (dimensions is None)
+
+
+@pytest.mark.parametrize("part", ["weight", "pdf"])
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_nothing_returned_may_be_no_number(part, value):
+    sample = returning(**{part: lambda x: np.where(x < 1e-3, value, 1.0)})
+    verdict = check_sampler(sample, ones, UNIT, dimensions=1, albedo=1.0, samples=20_000)
+    assert "not a number" in [f.cause for f in verdict.findings if f.check == f"finite {part}"], str(verdict)
+
+
+def test_shares_of_events_are_tested_where_declared_and_reported_where_not():
+    def sample(u):
+        return Draw(u[:, 0], event=(u[:, 1] < 0.33).astype(int))
+
+    def check(**options):
+        return check_sampler(sample, ones, UNIT, dimensions=2, samples=100_000, **options)
+
+    silent = check()
+    assert silent.outcome == "not rejected"
+    assert "event labels" in silent.unchecked[0]
+    assert "unchecked: event labels" in str(silent)
+    right = check(events={0: 0.67, 1: 0.33})
+    assert right.outcome == "not rejected", str(right)
+    assert not right.unchecked
+    assert check(events={0: 0.7, 1: 0.3}).cause == "wrong event label"
+    assert check(events={0: 0.67, 2: 0.33}).cause == "wrong event label", "a label that is not declared"
+    weighted = check_sampler(returning(weight=ones), ones, UNIT, dimensions=1, samples=20_000)
+    assert "weights" in weighted.unchecked[0]
+
+
+def sphere(u):
+    mu, phi = 2 * u[:, 0] - 1, 2 * np.pi * u[:, 1]
+    return np.stack([np.sqrt(1 - mu * mu) * np.cos(phi), np.sqrt(1 - mu * mu) * np.sin(phi), mu], axis=-1)
+
+
+def test_the_sphere_has_edges_too():
+    verdict = check_sampler(sphere, lambda x: np.full(len(x), 0.25 / np.pi), UnitSphere(), dimensions=2, samples=20_000)
+    assert verdict.outcome == "not rejected", str(verdict)
