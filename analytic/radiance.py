@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 from fogproof.analytic.airlight.single_scattering import single_scattering
+from fogproof.analytic.declaration import FOG, LAMP, RADIANCE, RAY, quantity
 from fogproof.analytic.rays.ambient_fog import ambient_fog
 from fogproof.contracts import Reference
 from fogproof.scene import Scene
 
 
+@quantity(
+    unit=RADIANCE,
+    convention="everything a camera ray sees: background, emission, and in-scattering as far as `scattering` says",
+    source="Chandrasekhar 1960, Radiative Transfer, section 7",
+    example={"medium": {**FOG, "emission": 2}, "ray": RAY, "scattering": "single", "light": LAMP, "background": 2},
+)
 def radiance(scene: Scene) -> Reference:
     """Return the radiance that reaches the camera [W/(m^2 sr)], shape R or R + (channels,).
 

@@ -19,10 +19,12 @@ from fogproof.analytic.airlight import sun2005 as airlight_sun2005
 from fogproof.analytic.airlight.phase import airlight_phase
 from fogproof.analytic.airlight.segments import Segments, whole
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
+from fogproof.analytic.declaration import quantity
 from fogproof.analytic.proven.airlight import rigorous_airlight
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError, UnsupportedError
-from fogproof.scene.phase import Isotropic, PhaseFunction
+from fogproof.scene.arrays import AxisArray, FloatArray
+from fogproof.scene.phase import Isotropic, PhaseFunction, PhaseFunctionField
 from fogproof.validate import as_float_array, require
 
 Method = Literal["asinh", "equiangular", "sun2005", "pegoraro2009", "pegoraro2010"]
@@ -40,26 +42,32 @@ WORST = 0.01
 """Relative error beyond which an alternative method has nothing to say."""
 
 
+@quantity(
+    unit="1/m",
+    convention="integral over t in [a, b] of exp(-sigma_t ((t - a) + r)) / r^2 4 pi f_p(-t/r), r^2 = t^2 + h^2",
+    source="Sun, Ramamoorthi, Narasimhan & Nayar 2005, A practical analytic single scattering model, eq. 5",
+    example={"sigma_t": 0.5, "h": [0.1, 1, 10], "a": -2, "b": "inf", "phase": {"kind": "henyey-greenstein", "g": 0.6}},
+)
 def airlight_integral(
-    sigma_t: Any,
-    h: Any,
-    a: Any,
-    b: Any,
-    phase: PhaseFunction | None = None,
+    sigma_t: FloatArray,
+    h: FloatArray,
+    a: FloatArray,
+    b: FloatArray,
+    phase: PhaseFunctionField | None = None,
     method: Method = "asinh",
     *,
     rigorous: bool = False,
 ) -> Reference:
     """Return the integral over t in [a, b] of exp(-sigma_t ((t - a) + r)) / r^2  4 pi f_p(-t/r), r^2 = t^2 + h^2 [1/m].
 
-    sigma_t  extinction coefficient [1/m], >= 0
-    h        distance of the light from the line of the ray [m], >= 0
-    a, b     the segment, as coordinates along the ray from the foot of the perpendicular [m]: camera at a, surface at
-             b >= a, which may be inf
-    phase    phase function, isotropic unless given; its forward cosine at t is -t/r
-    method   "asinh" is accurate everywhere; "equiangular", "sun2005", "pegoraro2009" and "pegoraro2010" are there to be
-             compared, with an honest error, and refuse where that exceeds 1 % or the phase function is not theirs
-    rigorous prove the result by ball arithmetic, whatever the method (slow; phase functions with a formula)
+    sigma_t   extinction coefficient [1/m], >= 0
+    h         distance of the light from the line of the ray [m], >= 0
+    a, b      the segment, as coordinates along the ray from the foot of the perpendicular [m]: camera at a, surface at
+              b >= a, which may be inf
+    phase     phase function, isotropic unless given; its forward cosine at t is -t/r
+    method    "asinh" is accurate everywhere; "equiangular", "sun2005", "pegoraro2009" and "pegoraro2010" are there to be
+              compared, with an honest error, and refuse where that exceeds 1 % or the phase function is not theirs
+    rigorous  prove the result by ball arithmetic, whatever the method (slow; phase functions with a formula)
 
     All four broadcast. The inputs are taken as exact. With "asinh" the relative error is below 1e-14 for isotropic,
     Henyey-Greenstein, Schlick and Rayleigh scattering until the result underflows. A light on the segment (h = 0) gives
@@ -75,8 +83,19 @@ def airlight_integral(
     return Reference(value.reshape(h.shape), error.reshape(h.shape), name, source)
 
 
+@quantity(
+    unit="1/m",
+    convention="airlight_integral on the grid of h, a and b, in this order of axes",
+    source="Sun, Ramamoorthi, Narasimhan & Nayar 2005, A practical analytic single scattering model, eq. 5",
+    example={"sigma_t": 0.5, "h": [0.1, 1], "a": [-2, -1], "b": [0, 1, 2]},
+)
 def airlight_table(
-    sigma_t: float, h: Any, a: Any, b: Any, phase: PhaseFunction | None = None, method: Method = "asinh"
+    sigma_t: float,
+    h: AxisArray,
+    a: AxisArray,
+    b: AxisArray,
+    phase: PhaseFunctionField | None = None,
+    method: Method = "asinh",
 ) -> Reference:
     """Return the airlight integral at every h, a, b of a table, (len(h), len(a), len(b)) [1/m]; NaN where b < a.
 

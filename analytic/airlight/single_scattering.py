@@ -9,24 +9,32 @@ import numpy as np
 from fogproof.analytic.airlight.by_quadrature import single_scattering_by_quadrature
 from fogproof.analytic.airlight.integral import Method
 from fogproof.analytic.airlight.result import Result
+from fogproof.analytic.declaration import FOG, FORWARD, LAMP, RADIANCE, RAY, quantity
 from fogproof.analytic.geometry.flat_rays import FlatRays, blocks_of
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError, UnsupportedError
 from fogproof.scene import AnyMedium, Medium, Ray
 from fogproof.scene.kinds import given
-from fogproof.scene.lights import Light, strength
-from fogproof.scene.occluders import Occluder
-from fogproof.scene.shapes import EVERYWHERE, Shape
+from fogproof.scene.lights import Light, LightField, strength
+from fogproof.scene.media import AnyMediumField
+from fogproof.scene.occluders import Occluder, OccluderField
+from fogproof.scene.shapes import EVERYWHERE, Shape, ShapeField
 from fogproof.validate import channel_count
 
 
+@quantity(
+    unit=RADIANCE,
+    convention="airlight alone, without the background; the light's intensity is in W/sr; " + FORWARD,
+    source="Sun, Ramamoorthi, Narasimhan & Nayar 2005, A practical analytic single scattering model",
+    example={"medium": {**FOG, "phase": {"kind": "henyey-greenstein", "g": 0.6}}, "ray": RAY, "light": LAMP},
+)
 def single_scattering(
-    medium: AnyMedium,
+    medium: AnyMediumField,
     ray: Ray,
-    light: Light,
+    light: LightField,
     *,
-    occluders: Sequence[Occluder] = (),
-    shape: Shape | None = None,
+    occluders: Sequence[OccluderField] = (),
+    shape: ShapeField | None = None,
     method: Method = "asinh",
 ) -> Reference:
     """Return the single-scattered radiance (airlight) along camera rays [W/(m^2 sr)].

@@ -10,6 +10,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from fogproof.analytic.arithmetic.error_free import EPS, TINY
+from fogproof.analytic.declaration import quantity
+from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError
 from fogproof.scene import (
     AnisotropicMedium,
@@ -22,7 +25,9 @@ from fogproof.scene import (
     Procedural,
     VoxelGrid,
 )
-from fogproof.validate import as_float_array, require
+from fogproof.scene.arrays import PointArray
+from fogproof.scene.media import AnyMediumField
+from fogproof.validate import as_float_array, points, require, unit_vectors
 
 Corners = list[tuple[tuple[np.ndarray, ...], np.ndarray]]
 """What a value in a grid is made of: (index arrays of a cell, its weight at each point)."""
@@ -56,9 +61,42 @@ class Coefficients(NamedTuple):
         return np.divide(1.0, self.sigma_t, out=np.full_like(self.sigma_t, np.inf), where=self.sigma_t > 0)
 
 
-def coefficients(medium: AnyMedium, x: Any, w: Any, channels: int | None = None) -> Coefficients:
+def _as_reference(medium: AnyMedium, x: Any, w: Any, channels: int | None = None) -> Reference:
+    """Return sigma_t, albedo and emission in a last axis of three.
+
+    Error: estimated, by how much they change where x moves by 8 EPS; beside a boundary that is the step across it.
+    """
+    x, w = points("x", x), unit_vectors("w", w)
+
+    def at(x: np.ndarray) -> np.ndarray:
+        return np.stack(coefficients(medium, x, w, channels), axis=-1)
+
+    value = at(x)
+    error = 32 * EPS * np.where(np.isfinite(value), np.abs(value), 0.0) + TINY
+    for axis, sign in product(np.eye(3), (-8, 8)):
+        moved = at(x + sign * EPS * np.abs(x) * axis)
+        with np.errstate(invalid="ignore"):
+            error = error + np.where(moved == value, 0.0, np.abs(moved - value))
+    return Reference(value, error, "the definition, pointwise", "the definition of the medium")
+
+
+@quantity(
+    unit="1/m, 1, W/(m^2 sr)",
+    convention="sigma_t, albedo and emission L_e at the point x for light along w, in the last axis",
+    source="the definition of the medium",
+    example={
+        "medium": {"kind": "exponential", "sigma_0": 0.3, "rate": [0, 0, -0.5], "albedo": 0.9, "emission": 2},
+        "x": [[0, 0, 0], [0, 0, 1]],
+        "w": [0, 0, 1],
+    },
+    answer=_as_reference,
+)
+def coefficients(medium: AnyMediumField, x: PointArray, w: PointArray, channels: int | None = None) -> Coefficients:
     """Return the coefficients of the medium at the points x (..., 3) for light along w (..., 3), which broadcast.
 
+    medium    what the ray crosses
+    x         (..., 3) points [m]
+    w         (..., 3) unit vectors along the light's way
     channels  how many channels the result has, the medium's own unless given
 
     Plain float64 without an error bound: a few EPS relative, plus what the rounding of x means. In vacuum around a

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS
+from fogproof.analytic.declaration import MEAN_FREE_PATHS, quantity
 from fogproof.analytic.multiple.ball_solution import (
     SOURCE,
     BallSolution,
@@ -27,6 +28,7 @@ from fogproof.analytic.multiple.scattering_arguments import checked_albedo, chec
 from fogproof.analytic.multiple.slab_modes import quadrature
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError
+from fogproof.scene.arrays import Count, FloatArray
 from fogproof.validate import require
 
 METHOD = "discrete ordinates in the equivalent slab"
@@ -46,7 +48,13 @@ Evaluate = Callable[[Any, BallSolution, np.ndarray, int], np.ndarray]
 """(albedo, solution, places (v,), n) -> values (v,)."""
 
 
-def ball_albedo(albedo: Any, radius: Any) -> Reference:
+@quantity(
+    unit="1",
+    convention="share of the light entering a ball that leaves it again, isotropic scattering; " + MEAN_FREE_PATHS,
+    source="Davison & Sykes 1957, Neutron Transport Theory, section 7",
+    example={"albedo": [0.5, 0.9, 1], "radius": 1},
+)
+def ball_albedo(albedo: FloatArray, radius: FloatArray) -> Reference:
     """Return the share of the light entering a ball that leaves it again, scattered or not.
 
     albedo  (...) single-scattering albedo in [0, 1]
@@ -59,7 +67,13 @@ def ball_albedo(albedo: Any, radius: Any) -> Reference:
     return _compare(c, R, np.zeros(c.shape), _albedo)
 
 
-def ball_source(albedo: Any, radius: Any, distance: Any) -> Reference:
+@quantity(
+    unit="1",
+    convention="albedo times the mean radiance under a uniform sky of radiance 1; " + MEAN_FREE_PATHS,
+    source="Davison & Sykes 1957, Neutron Transport Theory, section 7",
+    example={"albedo": 0.9, "radius": 1, "distance": [0, 0.5, 1]},
+)
+def ball_source(albedo: FloatArray, radius: FloatArray, distance: FloatArray) -> Reference:
     """Return the scattered radiance source S = albedo times the mean radiance, at a distance from the centre.
 
     albedo    (...) in [0, 1]
@@ -74,7 +88,13 @@ def ball_source(albedo: Any, radius: Any, distance: Any) -> Reference:
     return _compare(c, R, r, _source)
 
 
-def ball_radiance(albedo: Any, radius: Any, impact: Any) -> Reference:
+@quantity(
+    unit="1",
+    convention="along a ray at that distance from the centre, under a uniform sky of radiance 1; " + MEAN_FREE_PATHS,
+    source="Davison & Sykes 1957, Neutron Transport Theory, section 7",
+    example={"albedo": 0.9, "radius": 1, "impact": [0, 0.5, 1]},
+)
+def ball_radiance(albedo: FloatArray, radius: FloatArray, impact: FloatArray) -> Reference:
     """Return the radiance along a ray that crosses the ball, background included.
 
     albedo  (...) in [0, 1]
@@ -89,16 +109,36 @@ def ball_radiance(albedo: Any, radius: Any, impact: Any) -> Reference:
     return _compare(c, R, p, _radiance)
 
 
-def ball_albedo_orders(radius: float, count: int) -> Reference:
+@quantity(
+    unit="1",
+    convention="after n = 0 … count scatterings at albedo 1, in the last axis; " + MEAN_FREE_PATHS,
+    source="Davison & Sykes 1957, Neutron Transport Theory, section 7",
+    example={"radius": 1, "count": 3},
+)
+def ball_albedo_orders(radius: float, count: Count) -> Reference:
     """Return the share of the light that leaves a ball after n scatterings at albedo 1, n = 0 … count: (count + 1,).
+
+    radius  in mean free paths, >= 0, one number
+    count   the highest order, a whole number >= 0
 
     At albedo c the n-th order is c^n times that, and their sum over all n is `ball_albedo`.
     """
     return _orders(radius, np.zeros(()), count, _albedo, ball_albedo)
 
 
-def ball_radiance_orders(radius: float, impact: Any, count: int) -> Reference:
-    """Return `ball_radiance` order by order at albedo 1, n = 0 … count: (..., count + 1), for impact (...)."""
+@quantity(
+    unit="1",
+    convention="after n = 0 … count scatterings at albedo 1, in the last axis; " + MEAN_FREE_PATHS,
+    source="Davison & Sykes 1957, Neutron Transport Theory, section 7",
+    example={"radius": 1, "impact": [0, 0.5], "count": 3},
+)
+def ball_radiance_orders(radius: float, impact: FloatArray, count: Count) -> Reference:
+    """Return `ball_radiance` order by order at albedo 1, n = 0 … count: (..., count + 1).
+
+    radius  in mean free paths, >= 0, one number
+    impact  (...) distance of the ray's line from the centre, in [0, radius]
+    count   the highest order, a whole number >= 0
+    """
     return _orders(
         radius, _inside("impact", impact, radius), count, _radiance, lambda c, R: ball_radiance(c, R, impact)
     )

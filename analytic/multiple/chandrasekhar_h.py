@@ -10,13 +10,13 @@ exp(-pi^2 / h), which is 4e-22 here.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS
+from fogproof.analytic.declaration import quantity
 from fogproof.analytic.multiple.scattering_arguments import checked_albedo, checked_cosine
 from fogproof.contracts import Reference
+from fogproof.scene.arrays import FloatArray
 
 METHOD = "trapezoidal rule on the whole line"
 SOURCE = "Chandrasekhar 1960, Radiative Transfer, section 39"
@@ -31,7 +31,13 @@ RELATIVE_ERROR = 16 * EPS
 """Of H: the weights sum to 1/2 and |ln| <= 80 where they count, but ln H <= 1.1; the rest is rounding of ln and exp."""
 
 
-def chandrasekhar_h(albedo: Any, mu: Any) -> Reference:
+@quantity(
+    unit="1",
+    convention="of a half space that scatters isotropically; mu is the cosine to the normal",
+    source="Chandrasekhar 1960, Radiative Transfer, section 39",
+    example={"albedo": [0.5, 0.9, 1], "mu": 1},
+)
+def chandrasekhar_h(albedo: FloatArray, mu: FloatArray) -> Reference:
     """Return H(mu) of a half space that scatters isotropically, >= 1.
 
     albedo  (...) in [0, 1]

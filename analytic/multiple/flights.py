@@ -11,15 +11,23 @@ from typing import Any
 import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
+from fogproof.analytic.declaration import quantity
 from fogproof.analytic.multiple.scattering_arguments import checked_count
 from fogproof.contracts import Reference
+from fogproof.scene.arrays import FloatArray
 from fogproof.validate import as_float_array, require
 
 METHOD = "closed form"
 SOURCE = "Chandrasekhar 1943, Stochastic problems in physics and astronomy"
 
 
-def mean_displacement(flights: int, g: Any, mean_free_path: Any = 1.0) -> Reference:
+@quantity(
+    unit="m",
+    convention="along the first direction, after n flights between collisions in an infinite medium",
+    source="Chandrasekhar 1943, Stochastic problems in physics and astronomy",
+    example={"flights": 3, "g": [-0.5, 0, 0.9], "mean_free_path": 2},
+)
+def mean_displacement(flights: int, g: FloatArray, mean_free_path: FloatArray = 1.0) -> Reference:
     """Return the mean displacement along the first direction after n flights, l (1 + g + … + g^(n-1)) [m].
 
     flights         n >= 0, a whole number
@@ -33,7 +41,13 @@ def mean_displacement(flights: int, g: Any, mean_free_path: Any = 1.0) -> Refere
     return Reference(value, (n + 8) * EPS * size + TINY, METHOD, SOURCE)
 
 
-def mean_square_displacement(flights: int, g: Any, mean_free_path: Any = 1.0) -> Reference:
+@quantity(
+    unit="m^2",
+    convention="after n flights between collisions in an infinite medium",
+    source="Chandrasekhar 1943, Stochastic problems in physics and astronomy; Bohren & Clothiaux 2006, section 5.3",
+    example={"flights": 3, "g": [-0.5, 0, 0.9], "mean_free_path": 2},
+)
+def mean_square_displacement(flights: int, g: FloatArray, mean_free_path: FloatArray = 1.0) -> Reference:
     """Return the mean square displacement after n flights, 2 l^2 sum_(k=0)^(n-1) (n - k) g^k [m^2].
 
     Arguments as in `mean_displacement`; in closed form 2 l^2 [n/(1 - g) - g (1 - g^n)/(1 - g)^2]. Error: likewise.

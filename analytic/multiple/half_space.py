@@ -5,15 +5,15 @@ The plane albedo of a beam is also the radiance seen at that angle under a unifo
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
+from fogproof.analytic.declaration import quantity
 from fogproof.analytic.multiple.chandrasekhar_h import METHOD, RELATIVE_ERROR, angle, log_h, one_minus_theta_cot
 from fogproof.analytic.multiple.orders import taylor_coefficients
 from fogproof.analytic.multiple.scattering_arguments import checked_albedo, checked_cosine, checked_count
 from fogproof.contracts import Reference
+from fogproof.scene.arrays import Count, FloatArray
 
 SOURCE = "Chandrasekhar 1960, Radiative Transfer, sections 33 and 39"
 
@@ -21,7 +21,13 @@ _STEP = 0.2
 _S = _STEP * np.arange(-450, 251)
 
 
-def half_space_reflectance(albedo: Any, mu0: Any) -> Reference:
+@quantity(
+    unit="1",
+    convention="plane albedo: share of a beam of cosine mu0 to the normal, all orders, isotropic scattering",
+    source="Chandrasekhar 1960, Radiative Transfer, section 33, eq. 81",
+    example={"albedo": [0.5, 0.9, 1], "mu0": 0.5},
+)
+def half_space_reflectance(albedo: FloatArray, mu0: FloatArray) -> Reference:
     """Return the plane albedo 1 - sqrt(1 - c) H(mu0): what is reflected of a beam of cosine mu0 to the normal.
 
     albedo  (...) c in [0, 1]
@@ -35,8 +41,17 @@ def half_space_reflectance(albedo: Any, mu0: Any) -> Reference:
     return Reference(value, np.full(value.shape, RELATIVE_ERROR), METHOD, SOURCE)
 
 
-def half_space_reflectance_orders(mu0: Any, count: int) -> Reference:
+@quantity(
+    unit="1",
+    convention="after n = 0 … count scatterings at albedo 1, in the last axis",
+    source="Chandrasekhar 1960, Radiative Transfer, section 33, eq. 81",
+    example={"mu0": [0.2, 0.5, 1], "count": 3},
+)
+def half_space_reflectance_orders(mu0: FloatArray, count: Count) -> Reference:
     """Return the share R_n of a beam that is reflected after n scatterings at albedo 1, n = 0 … count: (..., count + 1).
+
+    mu0    (...) cosine of the beam to the normal, in (0, 1]
+    count  the highest order, a whole number >= 0
 
     At albedo c the n-th order is c^n R_n, and their sum over all n is the plane albedo.
     """
@@ -54,7 +69,13 @@ def _plane_albedo(c: np.ndarray, absorbed: np.ndarray, mu0: np.ndarray) -> np.nd
         return -np.expm1(0.5 * np.log(absorbed) + log_h(c, absorbed, mu0))
 
 
-def half_space_spherical_albedo(albedo: Any) -> Reference:
+@quantity(
+    unit="1",
+    convention="share of diffuse light, the same from all directions; isotropic scattering",
+    source="Chandrasekhar 1960, Radiative Transfer, sections 38 and 39",
+    example={"albedo": [0.5, 0.9, 0.99, 1]},
+)
+def half_space_spherical_albedo(albedo: FloatArray) -> Reference:
     """Return the spherical albedo: what is reflected of diffuse light, the same from all directions.
 
     albedo  (...) c in [0, 1]
@@ -74,7 +95,13 @@ def half_space_spherical_albedo(albedo: Any) -> Reference:
     return Reference(value, np.full(c.shape, 32 * EPS), METHOD, SOURCE)
 
 
-def half_space_brdf(albedo: Any, mu0: Any, mu: Any) -> Reference:
+@quantity(
+    unit="1/sr",
+    convention="radiance per irradiance of the surface, isotropic scattering; cosines to the normal; it does not depend on azimuth",
+    source="Chandrasekhar 1960, Radiative Transfer, section 33, eq. 1 and section 13, eq. 14",
+    example={"albedo": 0.9, "mu0": 0.5, "mu": [0.2, 0.5, 1]},
+)
+def half_space_brdf(albedo: FloatArray, mu0: FloatArray, mu: FloatArray) -> Reference:
     """Return the reflectance distribution c H(mu0) H(mu) / (4 pi (mu0 + mu)) [1/sr]: radiance per irradiance.
 
     albedo   (...) c in [0, 1]

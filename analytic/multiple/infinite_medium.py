@@ -15,8 +15,10 @@ from typing import Any
 import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import TINY
+from fogproof.analytic.declaration import MEAN_FREE_PATHS, quantity
 from fogproof.analytic.multiple.scattering_arguments import checked_albedo, checked_length
 from fogproof.contracts import Reference
+from fogproof.scene.arrays import FloatArray
 
 METHOD = "residue and trapezoidal rule on the whole line"
 SOURCE = "Case, de Hoffmann & Placzek 1953, section 14"
@@ -34,7 +36,14 @@ RELATIVE_ERROR = 1e-13
 """Of the fluence; compared with 27 digits in the tests."""
 
 
-def point_source_fluence(albedo: Any, distance: Any) -> Reference:
+@quantity(
+    unit="1",
+    convention="4 pi times the mean radiance around a source of unit power, per square mean free path; "
+    + MEAN_FREE_PATHS,
+    source="Case, de Hoffmann & Placzek 1953, Introduction to the Theory of Neutron Diffusion 1, section 14",
+    example={"albedo": [0.5, 0.9, 0.99], "distance": 1},
+)
+def point_source_fluence(albedo: FloatArray, distance: FloatArray) -> Reference:
     """Return the fluence around an isotropic point source of unit power, per square mean free path.
 
     albedo    (...) in [0, 1]
@@ -54,7 +63,13 @@ def point_source_fluence(albedo: Any, distance: Any) -> Reference:
     return Reference(np.where(r > 0, value, np.inf), error, METHOD, SOURCE)
 
 
-def point_source_collisions(albedo: Any, radius: Any) -> Reference:
+@quantity(
+    unit="1",
+    convention="mean number within a ball around the source, per photon; " + MEAN_FREE_PATHS,
+    source="Case, de Hoffmann & Placzek 1953, Introduction to the Theory of Neutron Diffusion 1, section 14",
+    example={"albedo": [0.5, 0.9, 0.99], "radius": 1},
+)
+def point_source_collisions(albedo: FloatArray, radius: FloatArray) -> Reference:
     """Return the mean number of collisions within a ball around the source, per photon: the integral of the fluence.
 
     albedo  (...) in [0, 1]

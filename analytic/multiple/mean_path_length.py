@@ -10,17 +10,26 @@ from __future__ import annotations
 import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS
+from fogproof.analytic.declaration import quantity
 from fogproof.contracts import Reference
 from fogproof.errors import UnsupportedError
 from fogproof.scene.kinds import given
-from fogproof.scene.shapes import Shape
+from fogproof.scene.shapes import ShapeField
 
 METHOD = "closed form"
 SOURCE = "Cauchy 1850; Blanco & Fournier 2003, An invariance property of diffusive random walks"
 
 
-def mean_path_length(shape: Shape) -> Reference:
+@quantity(
+    unit="m",
+    convention="4 V/S: mean path under a uniform sky if nothing is absorbed",
+    source="Blanco & Fournier 2003, An invariance property of diffusive random walks",
+    example={"shape": {"kind": "ball", "center": [0, 0, 0], "radius": 2}},
+)
+def mean_path_length(shape: ShapeField) -> Reference:
     """Return 4 V/S of a slab, ball or box [m]: the mean path length under a uniform sky if nothing is absorbed.
+
+    shape  what the medium fills
 
     Error: 4 eps, relative.
     Source: Blanco & Fournier 2003, An invariance property of diffusive random walks, Europhysics Letters 61.
@@ -32,9 +41,16 @@ def mean_path_length(shape: Shape) -> Reference:
     return Reference(np.asarray(value), np.asarray(4 * EPS * value), METHOD, SOURCE)
 
 
-def mean_scatterings(shape: Shape, sigma_s: float) -> Reference:
+@quantity(
+    unit="1",
+    convention="4 V sigma_s/S: mean number of scatterings under a uniform sky if nothing is absorbed",
+    source="Blanco & Fournier 2003, An invariance property of diffusive random walks",
+    example={"shape": {"kind": "box", "lower": [0, 0, 0], "upper": [1, 2, 3]}, "sigma_s": 2},
+)
+def mean_scatterings(shape: ShapeField, sigma_s: float) -> Reference:
     """Return the mean number of scatterings 4 V sigma_s/S of paths under a uniform sky if nothing is absorbed.
 
+    shape    as for `mean_path_length`
     sigma_s  scattering coefficient [1/m], or its mean over the volume where it varies
     """
     length = mean_path_length(shape)

@@ -16,16 +16,24 @@ from typing import Any
 import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS
+from fogproof.analytic.declaration import MEAN_FREE_PATHS, quantity
 from fogproof.analytic.multiple.orders import taylor_coefficients
 from fogproof.analytic.multiple.scattering_arguments import checked_albedo, checked_count, checked_length
 from fogproof.contracts import Reference
+from fogproof.scene.arrays import Count, FloatArray
 from fogproof.validate import as_float_array, require
 
 METHOD = "closed form"
 SOURCE = "Schuster 1905, Radiation through a foggy atmosphere"
 
 
-def rod_reflectance(albedo: Any, length: Any, g: Any = 0.0) -> Reference:
+@quantity(
+    unit="1",
+    convention="scattering in one dimension: a share (1 + g)/2 goes on forwards; " + MEAN_FREE_PATHS,
+    source="Hoogenboom 2008, The two-direction neutral-particle transport model; Schuster 1905",
+    example={"albedo": [0.5, 0.9, 1], "length": 2, "g": 0.5},
+)
+def rod_reflectance(albedo: FloatArray, length: FloatArray, g: FloatArray = 0.0) -> Reference:
     """Return what a rod sends back.
 
     albedo  (...) share c of the collisions that scatter, in [0, 1]
@@ -39,15 +47,32 @@ def rod_reflectance(albedo: Any, length: Any, g: Any = 0.0) -> Reference:
     return Reference(value, np.full(value.shape, 16 * EPS), METHOD, SOURCE)
 
 
-def rod_transmittance(albedo: Any, length: Any, g: Any = 0.0) -> Reference:
+@quantity(
+    unit="1",
+    convention="scattered or not, in one dimension: a share (1 + g)/2 goes on forwards; " + MEAN_FREE_PATHS,
+    source="Hoogenboom 2008, The two-direction neutral-particle transport model; Schuster 1905",
+    example={"albedo": [0.5, 0.9, 1], "length": 2, "g": 0.5},
+)
+def rod_transmittance(albedo: FloatArray, length: FloatArray, g: FloatArray = 0.0) -> Reference:
     """Return what passes a rod, scattered or not; arguments and error as in `rod_reflectance`."""
     c, L, g = _checked(albedo, length, g)
     value = _transmittance(c, 1 - c, L, g)
     return Reference(value, np.full(value.shape, 16 * EPS), METHOD, SOURCE)
 
 
-def rod_reflectance_orders(length: Any, count: int, g: Any = 0.0) -> Reference:
-    """Return what a rod sends back after n scatterings at albedo 1, n = 0 … count: (..., count + 1)."""
+@quantity(
+    unit="1",
+    convention="after n = 0 … count scatterings at albedo 1, in the last axis; " + MEAN_FREE_PATHS,
+    source="Hoogenboom 2008, The two-direction neutral-particle transport model; Schuster 1905",
+    example={"length": 2, "count": 3, "g": [0, 0.5]},
+)
+def rod_reflectance_orders(length: FloatArray, count: Count, g: FloatArray = 0.0) -> Reference:
+    """Return what a rod sends back after n scatterings at albedo 1, n = 0 … count: (..., count + 1).
+
+    length  (...) in mean free paths, >= 0
+    count   the highest order, a whole number >= 0
+    g       (...) mean cosine in [-1, 1]; it broadcasts against the length
+    """
     _, L, g = _checked(0.0, length, g)
     return taylor_coefficients(
         lambda c: _reflectance(c, 1 - c, L[..., None], g[..., None]),
@@ -57,8 +82,19 @@ def rod_reflectance_orders(length: Any, count: int, g: Any = 0.0) -> Reference:
     )
 
 
-def rod_transmittance_orders(length: Any, count: int, g: Any = 0.0) -> Reference:
-    """Return what passes a rod after n scatterings at albedo 1, n = 0 … count: (..., count + 1)."""
+@quantity(
+    unit="1",
+    convention="after n = 0 … count scatterings at albedo 1, in the last axis; " + MEAN_FREE_PATHS,
+    source="Hoogenboom 2008, The two-direction neutral-particle transport model; Schuster 1905",
+    example={"length": 2, "count": 3, "g": [0, 0.5]},
+)
+def rod_transmittance_orders(length: FloatArray, count: Count, g: FloatArray = 0.0) -> Reference:
+    """Return what passes a rod after n scatterings at albedo 1, n = 0 … count: (..., count + 1).
+
+    length  (...) in mean free paths, >= 0
+    count   the highest order, a whole number >= 0
+    g       (...) mean cosine in [-1, 1]; it broadcasts against the length
+    """
     _, L, g = _checked(0.0, length, g)
     return taylor_coefficients(
         lambda c: _transmittance(c, 1 - c, L[..., None], g[..., None]),

@@ -11,19 +11,31 @@ from typing import Any
 
 import numpy as np
 
+from fogproof.analytic.declaration import quantity
 from fogproof.analytic.multiple.scattering_arguments import checked_albedo, checked_cosine, checked_length
 from fogproof.analytic.multiple.slab_by_doubling import doubled_values
 from fogproof.analytic.multiple.slab_by_modes import SOURCE, Quantity, isotropic_values
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError, UnsupportedError
-from fogproof.scene.phase import Isotropic, PhaseFunction
+from fogproof.scene.arrays import FloatArray
+from fogproof.scene.phase import Isotropic, PhaseFunction, PhaseFunctionField
 from fogproof.validate import number
 
 METHOD = "discrete ordinates"
 
 
+@quantity(
+    unit="1",
+    convention="share of a beam of cosine mu0 to the normal, all directions and orders of scattering; tau is the optical thickness",
+    source="Chandrasekhar 1960, Radiative Transfer, chapter 8; Stamnes, Tsay, Wiscombe & Jayaweera 1988",
+    example={"albedo": [0.5, 0.9, 1], "tau": 1, "mu0": 0.5},
+)
 def slab_reflectance(
-    albedo: Any, tau: Any, mu0: Any, phase: PhaseFunction | None = None, refractive_index: float = 1.0
+    albedo: FloatArray,
+    tau: FloatArray,
+    mu0: FloatArray,
+    phase: PhaseFunctionField | None = None,
+    refractive_index: float = 1.0,
 ) -> Reference:
     """Return the share of a beam that a slab reflects, over all directions and orders of scattering.
 
@@ -41,8 +53,18 @@ def slab_reflectance(
     return _values(albedo, tau, mu0, phase, refractive_index, "reflected")
 
 
+@quantity(
+    unit="1",
+    convention="share of a beam of cosine mu0 to the normal, scattered or not; tau is the optical thickness",
+    source="Chandrasekhar 1960, Radiative Transfer, chapter 8; Stamnes, Tsay, Wiscombe & Jayaweera 1988",
+    example={"albedo": [0.5, 0.9, 1], "tau": 1, "mu0": 0.5},
+)
 def slab_transmittance(
-    albedo: Any, tau: Any, mu0: Any, phase: PhaseFunction | None = None, refractive_index: float = 1.0
+    albedo: FloatArray,
+    tau: FloatArray,
+    mu0: FloatArray,
+    phase: PhaseFunctionField | None = None,
+    refractive_index: float = 1.0,
 ) -> Reference:
     """Return the share of a beam that passes a slab, scattered or not; arguments and error as in `slab_reflectance`.
 
@@ -51,8 +73,18 @@ def slab_transmittance(
     return _values(albedo, tau, mu0, phase, refractive_index, "transmitted")
 
 
+@quantity(
+    unit="1",
+    convention="radiance at cosine mu0 where L_e = 1, cold surroundings; also the share absorbed of a beam",
+    source="Chandrasekhar 1960, Radiative Transfer, chapter 8; Stamnes, Tsay, Wiscombe & Jayaweera 1988",
+    example={"albedo": [0.5, 0.9, 1], "tau": 1, "mu0": 0.5},
+)
 def slab_emissivity(
-    albedo: Any, tau: Any, mu0: Any, phase: PhaseFunction | None = None, refractive_index: float = 1.0
+    albedo: FloatArray,
+    tau: FloatArray,
+    mu0: FloatArray,
+    phase: PhaseFunctionField | None = None,
+    refractive_index: float = 1.0,
 ) -> Reference:
     """Return the radiance at cosine mu0 of a slab that emits L_e = 1 in cold surroundings; also the share absorbed of a beam.
 
@@ -62,15 +94,27 @@ def slab_emissivity(
     return _values(albedo, tau, mu0, phase, refractive_index, "absorbed")
 
 
+@quantity(
+    unit="1",
+    convention="share of diffuse light, the same from all directions of one side; tau is the optical thickness",
+    source="Chandrasekhar 1960, Radiative Transfer, chapter 8; Stamnes, Tsay, Wiscombe & Jayaweera 1988",
+    example={"albedo": [0.5, 0.9, 1], "tau": 1},
+)
 def slab_diffuse_reflectance(
-    albedo: Any, tau: Any, phase: PhaseFunction | None = None, refractive_index: float = 1.0
+    albedo: FloatArray, tau: FloatArray, phase: PhaseFunctionField | None = None, refractive_index: float = 1.0
 ) -> Reference:
     """Return the share of diffuse light that a slab reflects; arguments and error as in `slab_reflectance`."""
     return _values(albedo, tau, None, phase, refractive_index, "reflected")
 
 
+@quantity(
+    unit="1",
+    convention="share of diffuse light, the same from all directions of one side; tau is the optical thickness",
+    source="Chandrasekhar 1960, Radiative Transfer, chapter 8; Stamnes, Tsay, Wiscombe & Jayaweera 1988",
+    example={"albedo": [0.5, 0.9, 1], "tau": 1},
+)
 def slab_diffuse_transmittance(
-    albedo: Any, tau: Any, phase: PhaseFunction | None = None, refractive_index: float = 1.0
+    albedo: FloatArray, tau: FloatArray, phase: PhaseFunctionField | None = None, refractive_index: float = 1.0
 ) -> Reference:
     """Return the share of diffuse light that passes a slab; arguments and error as in `slab_reflectance`."""
     return _values(albedo, tau, None, phase, refractive_index, "transmitted")
@@ -85,7 +129,7 @@ def checked_phase(phase: Any) -> PhaseFunction:
     return phase
 
 
-def _values(albedo: Any, tau: Any, mu0: Any, phase: Any, index: Any, quantity: Quantity) -> Reference:
+def _values(albedo: Any, tau: Any, mu0: Any, phase: Any, index: Any, wanted: Quantity) -> Reference:
     """Return the values for every albedo, thickness and cosine; mu0 = None means diffuse light."""
     beam = [] if mu0 is None else [checked_cosine("mu0", mu0)]
     arrays = np.broadcast_arrays(checked_albedo(albedo), checked_length("tau", tau), *beam)
@@ -95,11 +139,11 @@ def _values(albedo: Any, tau: Any, mu0: Any, phase: Any, index: Any, quantity: Q
     c, b, *cosines = (x.ravel() for x in arrays)
     mu = cosines[0] if cosines else None
     if isinstance(phase, Isotropic):
-        value, error = isotropic_values(c, b, mu, index, quantity)
+        value, error = isotropic_values(c, b, mu, index, wanted)
     elif index > 1:
         raise UnsupportedError(
             "a slab with a refractive index is solved for isotropic scattering only", "refractive_index"
         )
     else:
-        value, error = doubled_values(c, b, mu, phase, quantity)
+        value, error = doubled_values(c, b, mu, phase, wanted)
     return Reference(value.reshape(shape), error.reshape(shape), METHOD, SOURCE)

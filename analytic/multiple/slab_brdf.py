@@ -9,15 +9,15 @@ Source: Chandrasekhar 1960, Radiative Transfer, chapter 8 and section 62.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
+from fogproof.analytic.declaration import quantity
 from fogproof.analytic.multiple.isotropic_modes import isotropic_modes
 from fogproof.analytic.multiple.scattering_arguments import checked_albedo, checked_cosine, checked_length
 from fogproof.analytic.multiple.slab_modes import Modes, amplitudes, quadrature, scattered
 from fogproof.contracts import Reference
+from fogproof.scene.arrays import FloatArray
 
 METHOD = "discrete ordinates"
 SOURCE = "Chandrasekhar 1960, Radiative Transfer, chapter 8"
@@ -31,7 +31,13 @@ MANY = 0.5
 """Albedo from which on the mode of the smallest k is taken out of E."""
 
 
-def slab_brdf(albedo: Any, tau: Any, mu0: Any, mu: Any) -> Reference:
+@quantity(
+    unit="1/sr",
+    convention="radiance per irradiance of the surface, isotropic scattering; cosines to the normal; it does not depend on azimuth",
+    source="Chandrasekhar 1960, Radiative Transfer, section 62",
+    example={"albedo": 0.9, "tau": 1, "mu0": 0.5, "mu": [0.2, 0.5, 1]},
+)
+def slab_brdf(albedo: FloatArray, tau: FloatArray, mu0: FloatArray, mu: FloatArray) -> Reference:
     """Return the reflectance distribution of a slab that scatters isotropically [1/sr]: radiance per irradiance.
 
     albedo   (...) in [0, 1]

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from fogproof.analytic.declaration import quantity
 from fogproof.analytic.multiple.legendre_modes import complex_legendre_modes
 from fogproof.analytic.multiple.orders import taylor_coefficients
 from fogproof.analytic.multiple.scattering_arguments import checked_cosine, checked_count, checked_length
@@ -16,7 +17,8 @@ from fogproof.analytic.multiple.slab_solution import Leaving, leaving_slab
 from fogproof.analytic.phase.functions import phase_legendre_moments
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError
-from fogproof.scene.phase import Isotropic, PhaseFunction
+from fogproof.scene.arrays import Count, FloatArray
+from fogproof.scene.phase import Isotropic, PhaseFunctionField
 
 FEWEST_NODES, MOST_NODES = 14, 32
 """Half the number of nodes: complex modes cost more than real ones."""
@@ -25,11 +27,20 @@ NEGLIGIBLE = 1e-7
 """Legendre moment below which the moments are cut off."""
 
 
-def slab_reflectance_orders(tau: float, mu0: Any, count: int, phase: PhaseFunction | None = None) -> Reference:
+@quantity(
+    unit="1",
+    convention="after n = 0 … count scatterings at albedo 1, in the last axis",
+    source="Chandrasekhar 1960, Radiative Transfer, chapter 8; Stamnes, Tsay, Wiscombe & Jayaweera 1988",
+    example={"tau": 1, "mu0": [0.2, 0.5, 1], "count": 3},
+)
+def slab_reflectance_orders(
+    tau: float, mu0: FloatArray, count: Count, phase: PhaseFunctionField | None = None
+) -> Reference:
     """Return the share R_n of a beam that a slab reflects after n scatterings at albedo 1, n = 0 … count: (..., count + 1).
 
     tau    optical thickness >= 0, one number
     mu0    (...) cosine of the beam to the normal, in (0, 1]
+    count  the highest order, a whole number >= 0
     phase  isotropic unless given
 
     At albedo c the n-th order is c^n R_n, and their sum over all n is `slab_reflectance`.
@@ -37,7 +48,15 @@ def slab_reflectance_orders(tau: float, mu0: Any, count: int, phase: PhaseFuncti
     return _orders(tau, mu0, count, phase, lambda leaving: leaving.reflected, slab_reflectance)
 
 
-def slab_transmittance_orders(tau: float, mu0: Any, count: int, phase: PhaseFunction | None = None) -> Reference:
+@quantity(
+    unit="1",
+    convention="after n = 0 … count scatterings at albedo 1, in the last axis",
+    source="Chandrasekhar 1960, Radiative Transfer, chapter 8; Stamnes, Tsay, Wiscombe & Jayaweera 1988",
+    example={"tau": 1, "mu0": [0.2, 0.5, 1], "count": 3},
+)
+def slab_transmittance_orders(
+    tau: float, mu0: FloatArray, count: Count, phase: PhaseFunctionField | None = None
+) -> Reference:
     """Return the share of a beam that passes a slab after n scatterings at albedo 1, see `slab_reflectance_orders`."""
     return _orders(tau, mu0, count, phase, lambda leaving: leaving.transmitted, slab_transmittance)
 

@@ -13,12 +13,14 @@ from typing import Any
 import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS
+from fogproof.analytic.declaration import FORWARD, quantity
 from fogproof.analytic.phase.inverse import inverse_cdf
 from fogproof.analytic.phase.kinds import ROOM, Parts, formula, weighted_parts
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError
+from fogproof.scene.arrays import Count, FloatArray
 from fogproof.scene.kinds import given, module_of
-from fogproof.scene.phase import PhaseFunction
+from fogproof.scene.phase import PhaseFunction, PhaseFunctionField
 from fogproof.validate import as_float_array, require
 
 BLOCK = 8192
@@ -28,7 +30,13 @@ COSINE_SLOP = 8 * EPS
 """How far beyond [-1, 1] a cosine may lie: a dot product of two unit vectors rounds to as much as 1 + 2 eps or so."""
 
 
-def phase_pdf(phase: PhaseFunction, mu: Any) -> Reference:
+@quantity(
+    unit="1/sr",
+    convention=FORWARD,
+    source="van de Hulst 1957, Light Scattering by Small Particles; each kind has its own",
+    example={"phase": {"kind": "henyey-greenstein", "g": 0.6}, "mu": [-1, -0.5, 0, 0.5, 0.9, 1]},
+)
+def phase_pdf(phase: PhaseFunctionField, mu: FloatArray) -> Reference:
     """Return the phase function f_p(mu) [1/sr].
 
     phase  a phase function of the scene description
@@ -40,7 +48,13 @@ def phase_pdf(phase: PhaseFunction, mu: Any) -> Reference:
     return _reference(parts, _method(parts, "pdf"), *_in_blocks(lambda x: _sum(parts, "pdf", x), _cosines(mu)))
 
 
-def phase_cdf(phase: PhaseFunction, mu: Any) -> Reference:
+@quantity(
+    unit="1",
+    convention="probability that the cosine is <= mu; " + FORWARD,
+    source="van de Hulst 1957, Light Scattering by Small Particles; each kind has its own",
+    example={"phase": {"kind": "henyey-greenstein", "g": 0.6}, "mu": [-1, -0.5, 0, 0.5, 0.9, 1]},
+)
+def phase_cdf(phase: PhaseFunctionField, mu: FloatArray) -> Reference:
     """Return the probability that the forward cosine is at most mu: 2 pi int_-1^mu f_p(m) dm.
 
     phase  a phase function of the scene description
@@ -53,7 +67,13 @@ def phase_cdf(phase: PhaseFunction, mu: Any) -> Reference:
     return _reference(parts, _method(parts, "cdf"), *_in_blocks(lambda x: _sum(parts, "cdf", x), _cosines(mu)))
 
 
-def phase_quantile(phase: PhaseFunction, xi: Any) -> Reference:
+@quantity(
+    unit="1",
+    convention="the cosine below which a share xi is scattered; " + FORWARD,
+    source="van de Hulst 1957, Light Scattering by Small Particles; each kind has its own",
+    example={"phase": {"kind": "henyey-greenstein", "g": 0.6}, "xi": [0, 0.1, 0.5, 0.9, 1]},
+)
+def phase_quantile(phase: PhaseFunctionField, xi: FloatArray) -> Reference:
     """Return the smallest forward cosine mu with phase_cdf(phase, mu) >= xi.
 
     phase  a phase function of the scene description
@@ -73,13 +93,28 @@ def phase_quantile(phase: PhaseFunction, xi: Any) -> Reference:
     return _reference(parts, f"root of the cdf ({_method(parts, 'cdf')})", value, error)
 
 
-def phase_mean_cosine(phase: PhaseFunction) -> Reference:
-    """Return g = 2 pi int_-1^1 f_p(mu) mu dmu, the mean forward cosine, of shape ()."""
+@quantity(
+    unit="1",
+    convention="g, the mean of mu; " + FORWARD,
+    source="van de Hulst 1957, Light Scattering by Small Particles; each kind has its own",
+    example={"phase": {"kind": "cornette-shanks", "g": 0.7}},
+)
+def phase_mean_cosine(phase: PhaseFunctionField) -> Reference:
+    """Return g = 2 pi int_-1^1 f_p(mu) mu dmu, the mean forward cosine, of shape ().
+
+    phase  a phase function of the scene description
+    """
     parts = weighted_parts(phase)
     return _reference(parts, _method(parts, "mean_cosine"), *_sum(parts, "mean_cosine"))
 
 
-def phase_legendre_moments(phase: PhaseFunction, count: int) -> Reference:
+@quantity(
+    unit="1",
+    convention="chi_l, l = 0 … count, in the last axis: f_p = sum_l (2 l + 1)/(4 pi) chi_l P_l(mu); " + FORWARD,
+    source="Chandrasekhar 1960, Radiative Transfer, section 48; each kind has its own",
+    example={"phase": {"kind": "henyey-greenstein", "g": 0.6}, "count": 3},
+)
+def phase_legendre_moments(phase: PhaseFunctionField, count: Count) -> Reference:
     """Return chi_l = 2 pi int_-1^1 f_p(mu) P_l(mu) dmu for l = 0 … count, of shape (count + 1,).
 
     phase  a phase function of the scene description

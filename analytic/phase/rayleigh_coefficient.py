@@ -7,13 +7,22 @@ from typing import Any
 import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
+from fogproof.analytic.declaration import quantity
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError
+from fogproof.scene.arrays import FloatArray
+from fogproof.scene.complex_numbers import ComplexNumber
 from fogproof.validate import as_float_array, require
 
 
+@quantity(
+    unit="1/m",
+    convention="lengths in m, number density in 1/m^3, refractive index and wavelength as the medium sees them",
+    source="Rayleigh 1871; Bohren & Huffman 1983, eq. 5.8",
+    example={"diameter": 3e-10, "refractive_index": [1.5, 0.1], "number_density": 2.5e25, "wavelength": [4e-7, 7e-7]},
+)
 def rayleigh_scattering_coefficient(
-    diameter: Any, refractive_index: Any, number_density: Any, wavelength: Any
+    diameter: FloatArray, refractive_index: ComplexNumber, number_density: FloatArray, wavelength: FloatArray
 ) -> Reference:
     """Return beta_s = rho (2 pi^5/3) (d^6/lambda^4) |(eta^2 - 1)/(eta^2 + 2)|^2 [1/m].
 

@@ -8,19 +8,37 @@ import numpy as np
 
 from fogproof.analytic.arithmetic import double_double as dd
 from fogproof.analytic.arithmetic.error_free import EPS, two_sum
+from fogproof.analytic.declaration import FORWARD, quantity
 from fogproof.analytic.phase.functions import phase_pdf
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError
 from fogproof.scene import Ramp, VaryingPhase
-from fogproof.scene.phase import AnyPhase
+from fogproof.scene.arrays import FloatArray, PointArray
+from fogproof.scene.phase import AnyPhaseField
 from fogproof.validate import as_float_array, points, require
 
 
-def phase_pdf_at(phase: AnyPhase, x: Any, mu: Any) -> Reference:
+@quantity(
+    unit="1/sr",
+    convention="at the point x of a phase function that may vary in space; " + FORWARD,
+    source="elementary: scattering coefficients of two populations of particles add",
+    example={
+        "phase": {
+            "kind": "varying",
+            "first": {"kind": "henyey-greenstein", "g": 0.6},
+            "second": {"kind": "rayleigh"},
+            "share": {"start": [0, 0, 0], "end": [0, 0, 4]},
+        },
+        "x": [[0, 0, 1], [0, 0, 2]],
+        "mu": 0.5,
+    },
+)
+def phase_pdf_at(phase: AnyPhaseField, x: PointArray, mu: FloatArray) -> Reference:
     """Return f_p(x, mu) [1/sr] of a phase function that may vary in space.
 
-    x   (..., 3) points [m]
-    mu  (...) forward cosines, broadcast against the points
+    phase  a phase function of the scene description, constant or varying
+    x      (..., 3) points [m]
+    mu     (...) forward cosines, broadcast against the points
 
     The value is (1 - q(x)) first(mu) + q(x) second(mu), normalised at every x because q lies in [0, 1].
     Error: that of the two phase functions, plus 4 EPS relative; what a user's function returns for q counts as exact.

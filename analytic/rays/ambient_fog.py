@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
+from fogproof.analytic.declaration import FOG, RADIANCE, RAY, quantity
 from fogproof.analytic.geometry.rays import channels_of
 from fogproof.analytic.media.cells import is_trilinear
 from fogproof.analytic.proven.radiance import proven_radiance
@@ -14,14 +15,27 @@ from fogproof.analytic.rays.compositing import composite
 from fogproof.analytic.rays.radiance_by_quadrature import radiance_by_quadrature
 from fogproof.analytic.rays.transmittance import survival, thickness
 from fogproof.contracts import Reference
-from fogproof.scene import AnyMedium, Medium, PiecewiseConstantMedium, Ray, VoxelGrid
+from fogproof.scene import Medium, PiecewiseConstantMedium, Ray, VoxelGrid
+from fogproof.scene.arrays import ChannelArray
+from fogproof.scene.media import AnyMediumField
 from fogproof.validate import nonnegative_channels
 
 SOURCE = "Chandrasekhar 1960, Radiative Transfer, section 7, with a constant source function"
 
 
+@quantity(
+    unit=RADIANCE,
+    convention="in-scattered radiance constant along the ray; emission is multiplied by sigma_a",
+    source="Chandrasekhar 1960, Radiative Transfer, section 7",
+    example={"medium": {**FOG, "emission": 2}, "ray": RAY, "ambient": 0.5, "background": 3},
+)
 def ambient_fog(
-    medium: AnyMedium, ray: Ray, ambient: Any = 0.0, background: Any = 0.0, *, rigorous: bool = False
+    medium: AnyMediumField,
+    ray: Ray,
+    ambient: ChannelArray = 0.0,
+    background: ChannelArray = 0.0,
+    *,
+    rigorous: bool = False,
 ) -> Reference:
     """Return the radiance that reaches the camera [W/(m^2 sr)], shape R or R + (channels,).
 

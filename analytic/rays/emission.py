@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import ELEMENTARY, EPS, TINY
+from fogproof.analytic.declaration import FOG, RADIANCE, RAY, quantity
 from fogproof.analytic.geometry.rays import channels_of, rays_with_channels
 from fogproof.analytic.media.cells import is_trilinear
 from fogproof.analytic.proven.radiance import proven_radiance
@@ -13,12 +14,21 @@ from fogproof.analytic.rays.compositing import composite, phi1
 from fogproof.analytic.rays.radiance_by_quadrature import radiance_by_quadrature
 from fogproof.analytic.rays.transmittance import thickness
 from fogproof.contracts import Reference
-from fogproof.scene import AnisotropicMedium, AnyMedium, Medium, PiecewiseConstantMedium, Ray, VoxelGrid
+from fogproof.scene import AnisotropicMedium, Medium, PiecewiseConstantMedium, Ray, VoxelGrid
+from fogproof.scene.media import AnyMediumField
 
 SOURCE = "Chandrasekhar 1960, Radiative Transfer, section 7"
 
 
-def emitted_radiance(medium: AnyMedium, ray: Ray, *, times_sigma_a: bool = True, rigorous: bool = False) -> Reference:
+@quantity(
+    unit=RADIANCE,
+    convention="times_sigma_a: the medium's emission is L_e and is multiplied by sigma_a; otherwise it is a power per volume",
+    source="Chandrasekhar 1960, Radiative Transfer, section 7",
+    example={"medium": {**FOG, "emission": 2}, "ray": RAY},
+)
+def emitted_radiance(
+    medium: AnyMediumField, ray: Ray, *, times_sigma_a: bool = True, rigorous: bool = False
+) -> Reference:
     """Return the radiance that the medium itself sends to the camera [W/(m^2 sr)], shape R or R + (channels,).
 
     times_sigma_a  True: int T sigma_a L_e dt, with the medium's emission L_e [W/(m^2 sr)];

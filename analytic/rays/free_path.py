@@ -2,22 +2,33 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from fogproof.analytic.arithmetic.double_double import UNIT
 from fogproof.analytic.arithmetic.error_free import EPS, TINY, two_sum
+from fogproof.analytic.declaration import RAY, quantity
 from fogproof.analytic.geometry.rays import channels_of, rays_with_channels
 from fogproof.analytic.media.exponential import exponential_free_path
 from fogproof.analytic.media.linear import linear_free_path
 from fogproof.contracts import Reference
 from fogproof.errors import UnsupportedError
-from fogproof.scene import AnyMedium, ExponentialMedium, LinearMedium, Medium, Ray
+from fogproof.scene import ExponentialMedium, LinearMedium, Medium, Ray
+from fogproof.scene.arrays import FloatArray
+from fogproof.scene.media import AnyMediumField
 from fogproof.validate import as_float_array, require
 
 
-def free_path(medium: AnyMedium, ray: Ray, tau: Any) -> Reference:
+@quantity(
+    unit="m",
+    convention="distance at which the optical thickness is tau; inf where the ray ends or escapes before",
+    source="elementary: the optical thickness inverted",
+    example={
+        "medium": {"kind": "exponential", "sigma_0": 0.3, "rate": [0, 0, -0.5], "albedo": 0.9},
+        "ray": {**RAY, "length": "inf"},
+        "tau": [0.01, 0.1, 100],
+    },
+)
+def free_path(medium: AnyMediumField, ray: Ray, tau: FloatArray) -> Reference:
     """Return the smallest distance t [m] at which the optical thickness reaches tau, inf if the ray ends before.
 
     medium  homogeneous, linear or exponential: those with a closed form

@@ -11,29 +11,46 @@ from typing import Any
 
 import numpy as np
 
+from fogproof.analytic.declaration import FOG, RADIANCE, RAY, quantity
 from fogproof.analytic.geometry.rays import channels_of
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError
 from fogproof.scene import AnyMedium, Medium, Ray
+from fogproof.scene.arrays import ChannelArray
+from fogproof.scene.media import AnyMediumField
 from fogproof.validate import nonnegative_channels
 
 SOURCE = "Kirchhoff 1860; Chandrasekhar 1960, Radiative Transfer, section 7"
 
 
-def white_furnace(medium: AnyMedium, ray: Ray, radiance: Any = 1.0) -> Reference:
+@quantity(
+    unit=RADIANCE,
+    convention="albedo 1 in uniform light: nothing changes",
+    source="conservation of energy",
+    example={"medium": {"sigma_a": 0, "sigma_s": 3}, "ray": RAY, "radiance": 2},
+)
+def white_furnace(medium: AnyMediumField, ray: Ray, radiance: ChannelArray = 1.0) -> Reference:
     """Return what every ray sees in a white furnace of that radiance [W/(m^2 sr)], exactly.
 
-    medium  of albedo 1 and without emission; its shape and phase function are of no account
+    medium    of albedo 1 and without emission; its shape and phase function are of no account
+    radiance  of the environment [W/(m^2 sr)], grey or one value a channel
     """
     _require(medium, "albedo", 1.0, "in a white furnace: nothing may be absorbed")
     _require(medium, "emission", 0.0, "in a white furnace; with emission it is a thermal_furnace")
     return _constant(medium, ray, radiance, "white furnace")
 
 
-def thermal_furnace(medium: AnyMedium, ray: Ray, radiance: Any = 1.0) -> Reference:
+@quantity(
+    unit=RADIANCE,
+    convention="emission equal to the surrounding radiance: nothing changes",
+    source="Kirchhoff 1860",
+    example={"medium": {**FOG, "emission": 2}, "ray": RAY, "radiance": 2},
+)
+def thermal_furnace(medium: AnyMediumField, ray: Ray, radiance: ChannelArray = 1.0) -> Reference:
     """Return what every ray sees in a thermal furnace of that radiance [W/(m^2 sr)], exactly.
 
-    medium  of any albedo, whose emission is the radiance of the environment
+    medium    of any albedo, whose emission is the radiance of the environment
+    radiance  of the environment [W/(m^2 sr)], grey or one value a channel
     """
     _require(medium, "emission", np.asarray(nonnegative_channels("radiance", radiance, "W/(m^2 sr)")), "the radiance")
     return _constant(medium, ray, radiance, "thermal furnace")

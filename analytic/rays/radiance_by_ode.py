@@ -12,13 +12,16 @@ from typing import Any
 import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS
+from fogproof.analytic.declaration import RADIANCE, RAY, quantity
 from fogproof.analytic.geometry.rays import channels_of
 from fogproof.analytic.media.breakpoints import breakpoints
 from fogproof.analytic.media.coefficients import coefficients
 from fogproof.analytic.rays.radiance_by_quadrature import source_term
 from fogproof.contracts import Reference
 from fogproof.errors import UnsupportedError
-from fogproof.scene import AnyMedium, Ray
+from fogproof.scene import Ray
+from fogproof.scene.arrays import ChannelArray
+from fogproof.scene.media import AnyMediumField
 from fogproof.validate import nonnegative_channels
 
 LOOSE, TIGHT = 1e-10, 1e-12
@@ -28,8 +31,24 @@ EVALUATIONS = 30_000
 """Most looks at the medium in one piece of one ray: an explicit solver needs about two for each optical depth."""
 
 
+@quantity(
+    unit=RADIANCE,
+    convention="in-scattered radiance constant along the ray; a third way to ambient_fog and emitted_radiance",
+    source="Chandrasekhar 1960, Radiative Transfer, section 6, eq. 47; Hairer, Norsett & Wanner 1993, section II.5",
+    example={
+        "medium": {"kind": "exponential", "sigma_0": 0.3, "rate": [0, 0, -0.5], "albedo": 0.9, "emission": 2},
+        "ray": {**RAY, "length": 5},
+        "ambient": 0.5,
+        "background": 3,
+    },
+)
 def radiance_by_ode(
-    medium: AnyMedium, ray: Ray, ambient: Any = 0.0, background: Any = 0.0, *, times_sigma_a: bool = True
+    medium: AnyMediumField,
+    ray: Ray,
+    ambient: ChannelArray = 0.0,
+    background: ChannelArray = 0.0,
+    *,
+    times_sigma_a: bool = True,
 ) -> Reference:
     """Return the radiance at the camera [W/(m^2 sr)], shape R or R + (channels,); arguments as `radiance_by_quadrature`.
 

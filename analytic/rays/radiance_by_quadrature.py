@@ -2,20 +2,37 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import ELEMENTARY, EPS, TINY
+from fogproof.analytic.declaration import RADIANCE, RAY, quantity
 from fogproof.analytic.geometry.rays import channels_of
 from fogproof.analytic.media.adaptive import SOURCE, SourceTerm, integrate_along
 from fogproof.contracts import Reference
-from fogproof.scene import AnyMedium, Ray
+from fogproof.scene import Ray
+from fogproof.scene.arrays import ChannelArray
+from fogproof.scene.media import AnyMediumField
 from fogproof.validate import Channels, nonnegative_channels
 
 
+@quantity(
+    unit=RADIANCE,
+    convention="in-scattered radiance constant along the ray; a second way to ambient_fog and emitted_radiance",
+    source="Chandrasekhar 1960, Radiative Transfer, section 7",
+    example={
+        "medium": {"kind": "exponential", "sigma_0": 0.3, "rate": [0, 0, -0.5], "albedo": 0.9, "emission": 2},
+        "ray": {**RAY, "length": 5},
+        "ambient": 0.5,
+        "background": 3,
+    },
+)
 def radiance_by_quadrature(
-    medium: AnyMedium, ray: Ray, ambient: Any = 0.0, background: Any = 0.0, *, times_sigma_a: bool = True
+    medium: AnyMediumField,
+    ray: Ray,
+    ambient: ChannelArray = 0.0,
+    background: ChannelArray = 0.0,
+    *,
+    times_sigma_a: bool = True,
 ) -> Reference:
     """Return int_0^s T (sigma_s L_i + sigma_a L_e) dt + T(s) L_bg [W/(m^2 sr)], shape R or R + (channels,).
 

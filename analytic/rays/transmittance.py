@@ -6,6 +6,7 @@ import numpy as np
 
 from fogproof.analytic.arithmetic.double_double import UNIT
 from fogproof.analytic.arithmetic.error_free import ELEMENTARY, EPS, TINY, exp_minus, sum_times
+from fogproof.analytic.declaration import RAY, quantity
 from fogproof.analytic.geometry.rays import Rays, Thickness, channels_of, rays_with_channels
 from fogproof.analytic.media.adaptive import procedural_thickness
 from fogproof.analytic.media.anisotropic import anisotropic_thickness
@@ -25,11 +26,18 @@ from fogproof.scene import (
     Procedural,
     Ray,
 )
+from fogproof.scene.media import AnyMediumField
 
 SOURCE = "Bouguer 1729, Beer 1852; Chandrasekhar 1960, Radiative Transfer, section 7"
 
 
-def optical_thickness(medium: AnyMedium, ray: Ray, *, rigorous: bool = False) -> Reference:
+@quantity(
+    unit="1",
+    convention="integral of sigma_t along the ray",
+    source="Bouguer 1729; Lambert 1760",
+    example={"medium": {"kind": "exponential", "sigma_0": 0.3, "rate": [0, 0, -0.5], "albedo": 0.9}, "ray": RAY},
+)
+def optical_thickness(medium: AnyMediumField, ray: Ray, *, rigorous: bool = False) -> Reference:
     """Return tau = integral of sigma_t along the ray, dimensionless, shape R or R + (channels,).
 
     rigorous  prove the result by ball arithmetic (any medium but a `Procedural` one; slow)
@@ -46,7 +54,13 @@ def optical_thickness(medium: AnyMedium, ray: Ray, *, rigorous: bool = False) ->
         return Reference(value, tau.error + np.where(np.isinf(value), 0.0, EPS * value + TINY), tau.method, tau.source)
 
 
-def transmittance(medium: AnyMedium, ray: Ray, *, rigorous: bool = False) -> Reference:
+@quantity(
+    unit="1",
+    convention="fraction of the radiance that arrives: exp(-optical thickness)",
+    source="Bouguer 1729; Lambert 1760",
+    example={"medium": {"kind": "exponential", "sigma_0": 0.3, "rate": [0, 0, -0.5], "albedo": 0.9}, "ray": RAY},
+)
+def transmittance(medium: AnyMediumField, ray: Ray, *, rigorous: bool = False) -> Reference:
     """Return T = exp(-tau), dimensionless, shape R or R + (channels,).
 
     rigorous  prove the result by ball arithmetic (any medium but a `Procedural` one; slow)

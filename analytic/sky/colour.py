@@ -12,8 +12,10 @@ from typing import Any
 import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS
+from fogproof.analytic.declaration import quantity
 from fogproof.analytic.sky.rayleigh_atmosphere import air_optical_depth, plane_parallel_sky
 from fogproof.contracts import Reference
+from fogproof.scene.arrays import FloatArray
 from fogproof.validate import as_float_array, require
 
 WAVELENGTHS = np.arange(360, 781) * 1e-9
@@ -22,7 +24,13 @@ WAVELENGTHS = np.arange(360, 781) * 1e-9
 SOURCE = "CIE 015:2018, tristimulus values, by colour-science; spectra: Bodhaine et al. 1999"
 
 
-def sun_colour(air_mass: Any) -> Reference:
+@quantity(
+    unit="1",
+    convention="CIE 1931 XYZ in the last axis; the sun above the atmosphere, D65, has Y = 1",
+    source="CIE 15:2004; Bodhaine, Wood, Dutton & Slusser 1999",
+    example={"air_mass": [0, 1, 10]},
+)
+def sun_colour(air_mass: FloatArray) -> Reference:
     """Return XYZ of direct sunlight after `air_mass` vertical atmospheres, (...) -> (..., 3); the sun above them has Y = 1.
 
     air_mass  (...) 0 above the atmosphere, 1 with the sun in the zenith, 1/cos of its angle from there on a flat earth,
@@ -37,7 +45,13 @@ def sun_colour(air_mass: Any) -> Reference:
     return _tristimulus(np.exp(-path), 60 * np.max(path, axis=-1), "Beer's law")
 
 
-def sky_colour(mu_sun: Any, mu_view: Any, azimuth: Any) -> Reference:
+@quantity(
+    unit="1/sr",
+    convention="CIE 1931 XYZ in the last axis; the sun above the air, D65, has Y = 1; cosines from the zenith, azimuth in rad",
+    source="CIE 15:2004; Bodhaine, Wood, Dutton & Slusser 1999",
+    example={"mu_sun": 0.5, "mu_view": [0.5, 0.9], "azimuth": 0},
+)
+def sky_colour(mu_sun: FloatArray, mu_view: FloatArray, azimuth: FloatArray) -> Reference:
     """Return XYZ per steradian of the clear sky by single scattering, (...) -> (..., 3); the sun above it has Y = 1.
 
     mu_sun, mu_view, azimuth  as for `plane_parallel_sky`; they broadcast

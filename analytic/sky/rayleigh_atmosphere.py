@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import ELEMENTARY, EPS, TINY
+from fogproof.analytic.declaration import quantity
 from fogproof.analytic.phase.functions import phase_pdf
 from fogproof.analytic.rays.compositing import phi1
 from fogproof.contracts import Reference
+from fogproof.scene.arrays import FloatArray
 from fogproof.scene.phase import Rayleigh
 from fogproof.validate import as_float_array, require
 
@@ -23,7 +23,13 @@ VALID = (230e-9, 1690e-9)
 """Wavelengths at which the refractive index was measured [m]."""
 
 
-def air_cross_section(wavelength: Any) -> Reference:
+@quantity(
+    unit="m^2",
+    convention="Rayleigh scattering by a molecule of dry air; wavelength in m",
+    source="Bodhaine, Wood, Dutton & Slusser 1999, eq. 2; Ciddor 1996; Bates 1984",
+    example={"wavelength": [4e-7, 5.5e-7, 7e-7]},
+)
+def air_cross_section(wavelength: FloatArray) -> Reference:
     """Return the Rayleigh scattering cross section of a molecule of dry air [m^2].
 
         sigma = 24 pi^3 (n^2 - 1)^2 / (lambda^4 N^2 (n^2 + 2)^2) F
@@ -47,7 +53,13 @@ def air_cross_section(wavelength: Any) -> Reference:
     return Reference(value, 40 * EPS * value, "closed form", "Bodhaine et al. 1999, eq. 2; Ciddor 1996; Bates 1984")
 
 
-def air_optical_depth(wavelength: Any) -> Reference:
+@quantity(
+    unit="1",
+    convention="the whole atmosphere above sea level, straight up; wavelength in m",
+    source="Bodhaine, Wood, Dutton & Slusser 1999, eq. 2; Ciddor 1996; Bates 1984",
+    example={"wavelength": [4e-7, 5.5e-7, 7e-7]},
+)
+def air_optical_depth(wavelength: FloatArray) -> Reference:
     """Return the Rayleigh optical depth of the atmosphere above sea level, straight up, dimensionless.
 
     wavelength  (...) in vacuum [m], 230 nm to 1690 nm
@@ -59,7 +71,13 @@ def air_optical_depth(wavelength: Any) -> Reference:
     return Reference(value, 48 * EPS * value, sigma.method, sigma.source)
 
 
-def plane_parallel_sky(tau: Any, mu_sun: Any, mu_view: Any, azimuth: Any) -> Reference:
+@quantity(
+    unit="1/sr",
+    convention="the clear sky for unit irradiance of the sun, by single scattering; cosines from the zenith, azimuth in rad",
+    source="Chandrasekhar 1960, Radiative Transfer, section 7",
+    example={"tau": [0.1, 0.3], "mu_sun": 0.5, "mu_view": 0.9, "azimuth": 0},
+)
+def plane_parallel_sky(tau: FloatArray, mu_sun: FloatArray, mu_view: FloatArray, azimuth: FloatArray) -> Reference:
     """Return the radiance of the clear sky for unit solar irradiance on a plane facing the sun [1/sr].
 
         L = f_p(mu) / mu_view int_0^tau exp(-t/mu_sun - (tau - t)/mu_view) dt

@@ -23,10 +23,12 @@ import numpy as np
 from fogproof.analytic.airlight.phase import AirlightPhase, airlight_phase
 from fogproof.analytic.arithmetic.error_free import ELEMENTARY, EPS, TINY
 from fogproof.analytic.arithmetic.gauss_legendre import NODES, WEIGHTS
+from fogproof.analytic.declaration import quantity
 from fogproof.analytic.rays.compositing import phi1
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError, UnsupportedError
-from fogproof.scene.phase import Isotropic, PhaseFunction
+from fogproof.scene.arrays import FloatArray
+from fogproof.scene.phase import Isotropic, PhaseFunctionField
 from fogproof.validate import as_float_array, require
 
 Sampling = Literal["equiangular", "free-path", "distance", "uniform"]
@@ -43,8 +45,26 @@ ROUNDS = 7
 TOLERANCE = 1e-13
 
 
+@quantity(
+    unit="1/m^2",
+    convention="mean square of one realisation of airlight_integral that places its scattering event by `sampling`",
+    source="Kulla & Fajardo 2012, Importance sampling techniques for path tracing in participating media",
+    example={
+        "sigma_t": 0.5,
+        "h": [0.1, 1, 10],
+        "a": -2,
+        "b": 3,
+        "phase": {"kind": "henyey-greenstein", "g": 0.6},
+        "sampling": "equiangular",
+    },
+)
 def airlight_second_moment(
-    sigma_t: Any, h: Any, a: Any, b: Any, phase: PhaseFunction | None = None, sampling: Sampling = "equiangular"
+    sigma_t: FloatArray,
+    h: FloatArray,
+    a: FloatArray,
+    b: FloatArray,
+    phase: PhaseFunctionField | None = None,
+    sampling: Sampling = "equiangular",
 ) -> Reference:
     """Return the second moment of a one-sample estimate of `airlight_integral` [1/m^2].
 

@@ -8,14 +8,25 @@ from fogproof.analytic.airlight.phase import airlight_phase
 from fogproof.analytic.airlight.ray_and_light import place
 from fogproof.analytic.airlight.single_scattering import single_scattering
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
+from fogproof.analytic.declaration import FOG, LAMP, RAY, quantity
 from fogproof.analytic.variance.airlight import Sampling, airlight_second_moment
 from fogproof.contracts import Reference
 from fogproof.errors import UnsupportedError
 from fogproof.scene import Medium, PointLight, Ray
+from fogproof.scene.lights import LightField
+from fogproof.scene.media import AnyMediumField
 from fogproof.validate import channel_count
 
 
-def single_scattering_second_moment(medium: Medium, ray: Ray, light: PointLight, sampling: Sampling) -> Reference:
+@quantity(
+    unit="(W/(m^2 sr))^2",
+    convention="mean square of one realisation that places its scattering event by `sampling`",
+    source="Kulla & Fajardo 2012, Importance sampling techniques for path tracing in participating media",
+    example={"medium": FOG, "ray": RAY, "light": LAMP, "sampling": "equiangular"},
+)
+def single_scattering_second_moment(
+    medium: AnyMediumField, ray: Ray, light: LightField, sampling: Sampling
+) -> Reference:
     """Return E[X^2] of an estimate X of `single_scattering` [(W/(m^2 sr))^2], shape R or R + (channels,).
 
     medium    homogeneous
@@ -57,7 +68,13 @@ def single_scattering_second_moment(medium: Medium, ray: Ray, light: PointLight,
     return Reference(value.reshape(shape), error.reshape(shape), moment.method, moment.source)
 
 
-def single_scattering_variance(medium: Medium, ray: Ray, light: PointLight, sampling: Sampling) -> Reference:
+@quantity(
+    unit="(W/(m^2 sr))^2",
+    convention="variance of one realisation that places its scattering event by `sampling`",
+    source="Kulla & Fajardo 2012, Importance sampling techniques for path tracing in participating media",
+    example={"medium": FOG, "ray": RAY, "light": LAMP, "sampling": "equiangular"},
+)
+def single_scattering_variance(medium: AnyMediumField, ray: Ray, light: LightField, sampling: Sampling) -> Reference:
     """Return Var[X] = E[X^2] - L^2 of an estimate X of `single_scattering` [(W/(m^2 sr))^2].
 
     Arguments, shape and limits as for `single_scattering_second_moment`. The error is absolute: a sampler that is

@@ -16,6 +16,7 @@ import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import ELEMENTARY, EPS, TINY, two_sum
 from fogproof.analytic.arithmetic.panel_rule import NODES
+from fogproof.analytic.declaration import FOG, RAY, quantity
 from fogproof.analytic.geometry.rays import Thickness, channels_of, rays_with_channels
 from fogproof.analytic.media.adaptive import integrate_along
 from fogproof.analytic.media.breakpoints import breakpoints
@@ -26,6 +27,8 @@ from fogproof.analytic.variance.squared_extinction import squared_extinction
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError, UnsupportedError
 from fogproof.scene import AnyMedium, Medium, PiecewiseConstantMedium, Ray, VoxelGrid
+from fogproof.scene.arrays import ChannelArray
+from fogproof.scene.media import AnyMediumField
 from fogproof.validate import Channels, nonnegative_channels, require
 
 Tracking = Literal["delta", "ratio", "residual-ratio"]
@@ -34,8 +37,20 @@ Tracking = Literal["delta", "ratio", "residual-ratio"]
 SOURCE = "Novak, Selle & Jarosz 2014, Residual ratio tracking; moments of a Poisson process (Campbell 1909)"
 
 
+@quantity(
+    unit="1",
+    convention="mean square of one realisation of a tracker's estimate",
+    source="Novak, Selle & Jarosz 2014, Residual ratio tracking; Campbell 1909",
+    example={
+        "medium": {"kind": "exponential", "sigma_0": 0.3, "rate": [0, 0, -0.5], "albedo": 0.9},
+        "ray": {**RAY, "length": 5},
+        "tracking": "residual-ratio",
+        "majorant": 2,
+        "control": 0.5,
+    },
+)
 def transmittance_second_moment(
-    medium: AnyMedium, ray: Ray, tracking: Tracking, majorant: Any = None, control: Any = 0.0
+    medium: AnyMediumField, ray: Ray, tracking: Tracking, majorant: ChannelArray = None, control: ChannelArray = 0.0
 ) -> Reference:
     """Return E[w^2] of a tracker's estimate w of the transmittance, shape R or R + (channels,).
 
@@ -49,10 +64,23 @@ def transmittance_second_moment(
     return _second(_moments(medium, ray, tracking, majorant, control))
 
 
+@quantity(
+    unit="1",
+    convention="variance of one realisation of a tracker's estimate",
+    source="Novak, Selle & Jarosz 2014, Residual ratio tracking; Campbell 1909",
+    example={
+        "medium": {"kind": "exponential", "sigma_0": 0.3, "rate": [0, 0, -0.5], "albedo": 0.9},
+        "ray": {**RAY, "length": 5},
+        "tracking": "ratio",
+        "majorant": 2,
+    },
+)
 def transmittance_variance(
-    medium: AnyMedium, ray: Ray, tracking: Tracking, majorant: Any = None, control: Any = 0.0
+    medium: AnyMediumField, ray: Ray, tracking: Tracking, majorant: ChannelArray = None, control: ChannelArray = 0.0
 ) -> Reference:
-    """Return Var[w] = E[w^2] - T^2 of one realisation; arguments, shape and error as for the second moment.
+    """Return Var[w] = E[w^2] - T^2 of one realisation.
+
+    Arguments, shape and error as in `transmittance_second_moment`.
 
     Nothing cancels: delta T (1 - T), ratio T^2 (exp(V) - 1) with V = int (sigma_t - control)^2/majorant dt.
     """
@@ -70,13 +98,19 @@ def transmittance_variance(
     return Reference(value, np.where(np.isfinite(value), error, 0.0), f"T^2 (exp(V) - 1), {m.method}", SOURCE)
 
 
+@quantity(
+    unit="1",
+    convention="expected look-ups of the medium in one realisation",
+    source="Novak, Selle & Jarosz 2014, Residual ratio tracking; Campbell 1909",
+    example={"medium": FOG, "ray": RAY, "tracking": "delta", "majorant": 2},
+)
 def transmittance_lookups(
-    medium: AnyMedium, ray: Ray, tracking: Tracking, majorant: Any, control: Any = 0.0
+    medium: AnyMediumField, ray: Ray, tracking: Tracking, majorant: ChannelArray, control: ChannelArray = 0.0
 ) -> Reference:
     """Return the expected number of look-ups of sigma_t of one realisation, shape R or R + (channels,).
 
     Delta tracking stops at its first real collision: int majorant T dt. The others go on to the end: int majorant dt.
-    Arguments as for the second moment. Error: a few EPS relative; delta in a heterogeneous medium, estimated.
+    Arguments as for `transmittance_second_moment`. Error: a few EPS relative; delta in a heterogeneous medium, estimated.
     """
     channels = channels_of(medium, majorant=_majorant(majorant))
     _moments(medium, ray, tracking, majorant, control)  # checks the arguments
@@ -98,7 +132,15 @@ def transmittance_lookups(
     return Reference(np.broadcast_to(value, shape), np.broadcast_to(error, shape), method, SOURCE)
 
 
-def ambient_fog_variance(medium: AnyMedium, ray: Ray, ambient: Any = 0.0, background: Any = 0.0) -> Reference:
+@quantity(
+    unit="(W/(m^2 sr))^2",
+    convention="variance of one analog free path",
+    source="elementary: a sample of two values",
+    example={"medium": FOG, "ray": RAY, "ambient": 1, "background": 3},
+)
+def ambient_fog_variance(
+    medium: AnyMediumField, ray: Ray, ambient: ChannelArray = 0.0, background: ChannelArray = 0.0
+) -> Reference:
     """Return the variance of ambient fog by analog free paths [(W/(m^2 sr))^2], shape R or R + (channels,).
 
         (albedo L_i + (1 - albedo) L_e - L_bg)^2 T (1 - T)

@@ -53,6 +53,24 @@ class UnsupportedError(FogproofError):
     code = "unsupported"
 
 
+class TooLargeError(FogproofError):
+    """A request or its answer exceeds a bound on its size; the message says which, and how to raise it."""
+
+    code = "too-large"
+
+
+class TimeLimitError(FogproofError):
+    """An answer took longer than it may; the message says how long that is."""
+
+    code = "timeout"
+
+
+class InternalError(FogproofError):
+    """A fault of fogproof itself that cost one answer; the message asks for a report."""
+
+    code = "internal"
+
+
 class NotInstalledError(FogproofError):
     """An optional program or package is not there; the message is the line that installs it."""
 

@@ -13,12 +13,12 @@ Channels = float | tuple[float, ...]
 
 
 def as_float_array(name: str, value: Any) -> np.ndarray:
-    """Return `value` as a float64 array, or say what cannot be read as numbers."""
+    """Return `value` as a new float64 array without negative zeros, or say what cannot be read as numbers."""
     try:
         array = np.asarray(value)
         if array.dtype.kind not in "iuf":
             raise TypeError(array.dtype)
-        return array.astype(np.float64)
+        return np.asarray(array.astype(np.float64) + 0.0)  # -0.0 + 0.0 = 0.0: its sign must not choose a branch
     except (TypeError, ValueError, OverflowError):
         raise InvalidValueError(name, "must be a number or an array of numbers", value) from None
 

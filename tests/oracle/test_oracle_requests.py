@@ -4,14 +4,15 @@ import json
 import subprocess
 import sys
 from pathlib import Path
+from types import FunctionType
 
 import jsonschema
 import numpy as np
 import pytest
 
 from fogproof import HenyeyGreenstein, analytic
-from fogproof.checks import jsonable
 from fogproof.oracle import PROTOCOL, answer_text, schema
+from fogproof.oracle.answers import to_json
 from fogproof.quantities import quantities
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -23,6 +24,7 @@ LAMP = {"position": [1, 1, 0], "intensity": 3}
 HG = {"kind": "henyey-greenstein", "g": 0.6}
 MIXED = {"kind": "mixture", "components": [HG, {"kind": "rayleigh"}], "weights": [0.25, 0.75]}
 
+EXAMPLES = [{"quantity": name, **quantity.example} for name, quantity in quantities().items()]
 REQUESTS = [
     {"quantity": "optical_thickness", "medium": VOXELS, "ray": {**RAY, "origin": [0.5, 0.5, -2]}},
     {"quantity": "transmittance", "medium": FOG, "ray": {**RAY, "length": "inf"}},
@@ -73,15 +75,35 @@ def test_the_published_schema_is_current(published):
     jsonschema.Draft202012Validator.check_schema(published)
 
 
-def test_every_quantity_has_an_example():
-    assert {request["quantity"] for request in REQUESTS} == set(quantities())
+def test_every_public_function_is_a_quantity():
+    """A function that forgets to declare itself would not answer programs; only the golden tables are no question."""
+    functions = {name for name in analytic.__all__ if isinstance(getattr(analytic, name), FunctionType)}
+    assert functions - set(quantities()) == {"golden_values"}
 
 
-@pytest.mark.parametrize("request_", REQUESTS, ids=lambda r: r["quantity"])
+def test_every_argument_says_what_it_means():
+    silent = [f"{q.name}: {name}" for q in quantities().values() for name in q.arguments if not q.meanings.get(name)]
+    assert not silent, "add a line to the docstring"
+
+
+def _validate(instance, schema_):
+    """Hold an instance to a schema, which has been checked itself before."""
+    jsonschema.Draft202012Validator(schema_).validate(instance)
+
+
+def _schema_of(quantity, published):
+    """Return the schema of one quantity's requests: to try all sixty takes a second."""
+    definitions = published["$defs"]
+    models = [m for m in definitions.values() if m.get("properties", {}).get("quantity", {}).get("const") == quantity]
+    assert len(models) == 1
+    return {**models[0], "$defs": definitions}
+
+
+@pytest.mark.parametrize("request_", [*EXAMPLES, *REQUESTS], ids=lambda r: r["quantity"])
 def test_a_request_is_valid_and_answered(published, request_):
-    jsonschema.validate(request_, published)
-    answer = jsonable(answer_text(json.dumps(request_)))
-    jsonschema.validate(answer, {**published["$defs"]["answer"], "$defs": published["$defs"]})
+    _validate(request_, _schema_of(request_["quantity"], published))
+    answer = json.loads(to_json(answer_text(json.dumps(request_))))
+    _validate(answer, {**published["$defs"]["answer"], "$defs": published["$defs"]})
     assert np.shape(answer["value"]) == np.shape(answer["error"])
     assert answer["protocol"] == PROTOCOL
     assert answer.get("id") == request_.get("id")
@@ -113,7 +135,7 @@ FAULTS = [
 @pytest.mark.parametrize(("text", "path", "code", "message"), FAULTS)
 def test_a_fault_gets_code_message_and_path(published, text, path, code, message):
     failure = answer_text(text)
-    jsonschema.validate(failure, {**published["$defs"]["failure"], "$defs": published["$defs"]})
+    _validate(failure, {**published["$defs"]["failure"], "$defs": published["$defs"]})
     error = failure["error"]
     assert (error["code"], error["path"]) == (code, path) or code == "unsupported" == error["code"]
     assert message in error["message"]

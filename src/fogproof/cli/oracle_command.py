@@ -2,27 +2,42 @@
 
 from __future__ import annotations
 
+import io
 import json
+import math
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable
 
 import click
 
-from fogproof.checks import jsonable
 from fogproof.errors import InvalidInputError
-from fogproof.oracle import answer_text, schema
+from fogproof.oracle import Limits, schema, serve
+from fogproof.quantities import quantities
 
 
 @click.command("oracle")
 @click.argument("request", metavar="REQUEST.json|-", required=False)
+@click.option("--list", "as_list", is_flag=True, help="List the quantities with units, conventions and arguments.")
 @click.option("--schema", "as_schema", is_flag=True, help="Print the JSON Schema of requests and answers instead.")
 @click.option(
     "--rigorous", is_flag=True, help="Prove every answer by ball arithmetic (slow; needs the extra 'rigorous')."
 )
-def command(request: str | None, as_schema: bool, rigorous: bool) -> int:
+@click.option("--max-values", default=Limits.values, show_default=True, help="Numbers in one answer, at most.")
+@click.option("--timeout", default=Limits.seconds, show_default=True, help="Seconds for one answer, 0 for no limit.")
+@click.option("--max-bytes", default=Limits.bytes, show_default=True, help="Length of a request, at most.")
+def command(
+    request: str | None,
+    as_list: bool,
+    as_schema: bool,
+    rigorous: bool,
+    max_values: int,
+    timeout: float,
+    max_bytes: int,
+) -> int:
     """Answer JSON requests with reference values and error bounds, one answer a line.
 
-    REQUEST.json holds one JSON object, or one a line; '-' reads lines from stdin and answers each at once.
+    REQUEST.json holds one JSON object, or one a line; '-' reads lines from stdin and answers each at once. A line
+    that cannot be answered gets an error with a code, and costs no other line its answer.
 
     \b
     Example:  echo '{"quantity": "phase_pdf", "phase": {"kind": "rayleigh"}, "mu": [-1, 0, 1]}' | fogproof oracle -
@@ -30,40 +45,39 @@ def command(request: str | None, as_schema: bool, rigorous: bool) -> int:
     if as_schema:
         click.echo(json.dumps(schema(), indent=1))
         return 0
+    if as_list:
+        for quantity in quantities().values():
+            click.echo(json.dumps(quantity.to_dict(), ensure_ascii=False))
+        return 0
     if request is None:
-        raise click.UsageError("give a REQUEST.json, '-' for lines on stdin, or --schema")
-    bad = False
-    for text in _requests(request):
-        reply = jsonable(answer_text(text, rigorous))
-        bad = bad or ("error" in reply and "value" not in reply)
-        click.echo(json.dumps(reply))
-        sys.stdout.flush()  # whoever writes one line and waits must get its answer
-    return 2 if bad else 0
+        raise click.UsageError("give a REQUEST.json, '-' for lines on stdin, --list or --schema")
+    limits = Limits(values=max_values, seconds=timeout or math.inf, bytes=max_bytes)
+    read = _stdin() if request == "-" else _file(request)
+    return 0 if serve(read, sys.stdout.buffer, rigorous, limits) else 2
 
 
-def _requests(source: str) -> Iterator[str]:
-    if source == "-":
-        yield from (line for line in sys.stdin if line.strip())
-        return
+def _stdin() -> Callable[[int], bytes]:
+    if sys.stdin is None:
+        raise InvalidInputError("stdin is closed; give requests on it, or in a file")
+    stdin = sys.stdin.buffer
+    return stdin.read1 if isinstance(stdin, io.BufferedReader) else stdin.read
+
+
+def _file(path: str) -> Callable[[int], bytes]:
+    """Return how to read a file: as it is if it holds lines of JSON, as one line if it holds one object on several."""
     try:
-        with open(source, encoding="utf-8") as file:
-            text = file.read()
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
-        raise InvalidInputError(f"cannot read the request file {source}: {reason}", source) from None
-    try:
-        json.loads(text)
-    except (json.JSONDecodeError, RecursionError):
-        lines = [line for line in text.splitlines() if line.strip()]
-        # A file of JSON lines, or a single broken object: then its own fault is worth more than that of its first line.
-        yield from lines if any(_is_json(line) for line in lines) else [text]
-    else:
-        yield text
+        with open(path, "rb") as file:
+            content = file.read()
+    except OSError as error:
+        raise InvalidInputError(f"cannot read the request file {path}: {error.strerror}", path) from None
+    if not any(_is_json(line) for line in content.split(b"\n") if line.strip()):
+        content = content.replace(b"\n", b" ")
+    return io.BytesIO(content).read1
 
 
-def _is_json(line: str) -> bool:
+def _is_json(line: bytes) -> bool:
     try:
         json.loads(line)
-    except (json.JSONDecodeError, RecursionError):
+    except (ValueError, RecursionError):
         return False
     return True

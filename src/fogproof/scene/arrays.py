@@ -1,14 +1,26 @@
-"""An array type for dataclass fields that pydantic can read from nested lists, without importing pydantic here."""
+"""Types of fields and arguments that are arrays: pydantic reads them from nested lists, without being imported here.
+
+`Any` for type checkers, because the functions accept whatever NumPy can make an array of.
+"""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Annotated, Any
 
-from fogproof.validate import as_float_array
+from fogproof.validate import Channels, as_float_array
 
 
-class _FromNestedLists:
-    """Tells pydantic how to validate and describe an array of numbers; called only when a file is read."""
+@dataclass(frozen=True)
+class Numbers:
+    """Tells pydantic how to validate and describe an array of numbers; called only when a file or request is read.
+
+    axes   how many axes at the end belong to one value: 0 for numbers, 1 for points (..., 3); all before them broadcast
+    table  True for an axis of a table: one-dimensional, and never broadcast against others
+    """
+
+    axes: int = 0
+    table: bool = False
 
     def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> Any:
         from pydantic_core import core_schema
@@ -16,11 +28,44 @@ class _FromNestedLists:
         return core_schema.no_info_plain_validator_function(lambda value: as_float_array("array", value))
 
     def __get_pydantic_json_schema__(self, _schema: Any, _handler: Any) -> dict[str, Any]:
+        if self.table or self.axes:
+            described = "a list of numbers" if self.table else "[x, y, z], or nested lists of such points"
+            return {"type": "array", "description": described}
         return {
-            "anyOf": [{"type": "number"}, {"type": "array"}, {"const": "inf"}],
+            "anyOf": [{"type": "number"}, {"type": "array"}, {"enum": ["inf", "-inf"]}],
             "description": "a number or nested lists of numbers",
         }
 
 
-# `Any` for type checkers, because the constructors accept whatever NumPy can make an array of.
-FloatArray = Annotated[Any, _FromNestedLists()]
+class _GreyOrChannels:
+    """Tells pydantic to read a grey value, or a list with one value a channel."""
+
+    def __get_pydantic_core_schema__(self, _source: Any, handler: Any) -> Any:
+        return handler.generate_schema(Channels)
+
+
+FloatArray = Annotated[Any, Numbers()]
+"""Numbers (...), which broadcast."""
+
+PointArray = Annotated[Any, Numbers(axes=1)]
+"""Points or vectors (..., 3), which broadcast without their last axis."""
+
+AxisArray = Annotated[Any, Numbers(table=True)]
+"""Numbers (n,) along one axis of a table."""
+
+ChannelArray = Annotated[Any, _GreyOrChannels()]
+"""A number, or one number a channel."""
+
+
+@dataclass(frozen=True)
+class _Whole:
+    """Tells pydantic to read a whole number >= 0."""
+
+    def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> Any:
+        from pydantic_core import core_schema
+
+        return core_schema.int_schema(ge=0, strict=True)
+
+
+Count = Annotated[int, _Whole()]
+"""A whole number n >= 0; the answer has n + 1 values along its last axis."""

@@ -46,6 +46,20 @@ def kinds_of(room: str) -> dict[str, type]:
     return kinds
 
 
+def name_kinds(schema: Any, definitions: dict[str, Any]) -> None:
+    """Write the key `kind` into the definitions of a JSON Schema, wherever a union says which kinds its choices are."""
+    for part in schema.values() if isinstance(schema, dict) else schema if isinstance(schema, list) else ():
+        name_kinds(part, definitions)
+    if isinstance(schema, dict) and "default_kind" in schema:
+        default = schema.pop("default_kind")
+        for kind, choice in zip(schema.pop("kinds"), schema["oneOf"], strict=True):
+            definition = definitions[choice["$ref"].rpartition("/")[2]]
+            definition.setdefault("properties", {})["kind"] = {"const": kind}
+            required = definition.setdefault("required", [])
+            if kind != default and "kind" not in required:
+                required.insert(0, "kind")
+
+
 @dataclass(frozen=True)
 class ByKind:
     """Annotation that tells pydantic to choose the type by `kind`; pydantic is imported only when a file is read.
@@ -69,12 +83,18 @@ class ByKind:
             # Below here pydantic no longer sees JSON but Python, where its strict mode takes a list for no tuple.
             return {key: _as_tuple(value) for key, value in table.items() if key != "kind"}
 
-        types = kinds_of(self.types) if isinstance(self.types, str) else self.types
         choices: dict[Any, Any] = {
             kind: core_schema.no_info_before_validator_function(without_kind, handler.generate_schema(cls))
-            for kind, cls in types.items()
+            for kind, cls in self._table().items()
         }
         return core_schema.tagged_union_schema(choices, discriminator=self._kind if self.default else "kind")
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
+        # Which choice is which kind: a kind may hold others of its room, so its own description may not be there yet.
+        return {**handler(schema), "kinds": list(self._table()), "default_kind": self.default}
+
+    def _table(self) -> dict[str, type]:
+        return kinds_of(self.types) if isinstance(self.types, str) else self.types
 
     def _kind(self, table: Any) -> Any:
         return table.get("kind", self.default) if isinstance(table, dict) else self.default

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fogproof.errors import InvalidValueError
-from fogproof.scene.arrays import FloatArray
+from fogproof.scene.arrays import FloatArray, PointArray
 from fogproof.validate import as_float_array, points, require, unit_vectors
 
 
@@ -20,8 +20,8 @@ class Ray:
     length     (...) [m], > 0; inf where the ray meets no surface
     """
 
-    origin: FloatArray
-    direction: FloatArray
+    origin: PointArray
+    direction: PointArray
     length: FloatArray = np.inf
 
     def __post_init__(self) -> None:

@@ -20,6 +20,8 @@ Scattering = Literal["none", "ambient", "single"]
 class Scene:
     """What a camera ray sees.
 
+    medium      what the ray crosses
+    ray         camera rays of shape R
     scattering  how far in-scattering is followed: "none", "ambient" or "single"
     light       needed by "single": point, spot or directional light, or a constant environment
     occluders   what stands between the light and the ray; the camera sees past it

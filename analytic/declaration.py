@@ -1,0 +1,69 @@
+"""What a function of the oracle declares beside itself: all that programs, tables and tests know of it.
+
+Names, types and defaults of its arguments stand in its signature, what they mean in its docstring, the rest in `@quantity`:
+
+    @quantity(unit="1/sr", convention=FORWARD, source="Rayleigh 1871", example={"phase": {"kind": "rayleigh"}, "mu": 0.5})
+    def phase_pdf(phase: PhaseFunctionField, mu: FloatArray) -> Reference: ...
+
+A public function with a declaration answers over JSON, and stands in the schema, the list of quantities and the docs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from fogproof.contracts import Reference
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+FORWARD = "mu is the forward cosine: propagation direction in . propagation direction out"
+RADIANCE = "W/(m^2 sr)"
+MEAN_FREE_PATHS = "lengths in mean free paths: sigma_t times metres"
+
+RAY = {"origin": [0, 0, -2], "direction": [0, 0, 1], "length": [1, 4, "inf"]}
+FOG = {"sigma_a": 0.1, "sigma_s": 0.4}
+LAMP = {"position": [1, 1, 0], "intensity": 3}
+"""Parts of the examples."""
+
+
+@dataclass(frozen=True)
+class Declaration:
+    """What a function of the oracle says of its answers.
+
+    unit        of the value; 1 for a number without one
+    convention  the sign, direction and normalisation that tell this quantity from its relatives
+    source      author, year, equation
+    example     arguments of a small question, as JSON puts them
+    answer      the function that answers programs, with the same arguments, if the declared one returns no `Reference`
+    """
+
+    unit: str
+    convention: str
+    source: str
+    example: dict[str, Any]
+    answer: Callable[..., Reference] | None = None
+
+
+def quantity(
+    *,
+    unit: str,
+    convention: str,
+    source: str,
+    example: dict[str, Any],
+    answer: Callable[..., Reference] | None = None,
+) -> Callable[[Function], Function]:
+    """Declare a function of the oracle to be a quantity; see `Declaration`."""
+    declared = Declaration(unit, convention, source, example, answer)
+
+    def declare(function: Function) -> Function:
+        function.declaration = declared  # type: ignore[attr-defined]
+        return function
+
+    return declare
+
+
+def declaration_of(function: Any) -> Declaration | None:
+    """Return what a function declares of itself, None for one that is no quantity."""
+    return getattr(function, "declaration", None)
