@@ -81,9 +81,10 @@ def doubled_values(
                 break
             found, collisions = _solution(pairs, which, mu0, moments.chi, quantity, todo, n)
             smaller = np.abs(np.log(np.clip(found, TINY, 1)))
-            change = moments.change[MOMENTS * n] * collisions
+            scatterings = c[todo] * collisions
+            change = moments.change[MOMENTS * n] * scatterings
             if quantity == "transmitted":  # what passes a deep slab changes with the phase function in relative terms
-                change = np.minimum(change, moments.change[MOMENTS * n] * 10 * (1 + collisions + smaller) * found)
+                change = np.minimum(change, moments.change[MOMENTS * n] * 10 * (1 + scatterings + smaller) * found)
             rounding = (ROUNDING + 4 * EPS * smaller) * np.abs(found) + change
             if before is None:
                 before = found
