@@ -22,14 +22,14 @@ from fogproof.analytic.airlight.ray_and_light import meets_light
 from fogproof.analytic.airlight.result import Result
 from fogproof.analytic.arithmetic.adaptive_panels import Look, integrate_panels
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
-from fogproof.analytic.geometry.convex_shapes import contains
+from fogproof.analytic.geometry.convex_shapes import changes_of_face, contains
 from fogproof.analytic.geometry.flat_rays import FlatRays
 from fogproof.analytic.geometry.shadows import Shadow, shadow_of_direction, shadow_of_point
 from fogproof.analytic.media.coefficients import coefficients
 from fogproof.analytic.phase.functions import phase_pdf
 from fogproof.analytic.phase.varying import share_at
 from fogproof.errors import UnsupportedError
-from fogproof.scene import AnyMedium, VaryingPhase
+from fogproof.scene import AnyMedium, Medium, VaryingPhase
 from fogproof.scene.kinds import given
 from fogproof.scene.lights import Light, strength
 from fogproof.scene.occluders import Occluder
@@ -45,7 +45,7 @@ Attenuated = tuple[np.ndarray, np.ndarray]
 
 
 def single_scattering_by_quadrature(
-    medium: AnyMedium, ray: FlatRays, light: Light, shape: Shape, occluders: Sequence[Occluder]
+    medium: AnyMedium, ray: FlatRays, light: Light, shape: Shape, occluders: Sequence[Occluder], exact: bool = False
 ) -> Result:
     """Return the radiance (n, channels) along the flattened rays, its estimated error, method and source."""
     beam_of, rule = given(light, ROOM, "beam"), given(light, ROOM, "incident")
@@ -53,7 +53,9 @@ def single_scattering_by_quadrature(
         raise UnsupportedError(f"single scattering of a {type(light).__name__} is not known", "light")
     with np.errstate(all="ignore"):
         if beam_of is not None:
-            beam: Beam = beam_of(light, ray)
+            beam: Beam = beam_of(light, ray, exact)
+            if isinstance(medium, Medium) and beam.where is not None:
+                beam = beam._replace(edges=_with_changes(beam, changes_of_face(shape, ray, _position(light))))
             pieces = lit_pieces(medium, ray, shape, beam, None, _shadows(beam, light, ray, occluders))
             look = _from_one_direction(medium, ray, shape, beam, light, pieces)
         else:
@@ -83,6 +85,13 @@ def _shadows(beam: Beam, light: Light, ray: FlatRays, occluders: Sequence[Occlud
 def _position(light: Light) -> tuple[float, float, float]:
     position: tuple[float, float, float] = light.position  # type: ignore[union-attr]  # a beam from a point has one
     return position
+
+
+def _with_changes(beam: Beam, distances: np.ndarray) -> np.ndarray:
+    """Return the edges of the beam and places at distances (n, m) from the cameras, from the foot of the perpendicular all."""
+    assert beam.where is not None
+    places = distances + beam.where.a[:, None]
+    return places if beam.edges is None else np.concatenate([beam.edges, places], axis=1)
 
 
 def _scattering(medium: AnyMedium, x: np.ndarray, w: np.ndarray) -> np.ndarray:

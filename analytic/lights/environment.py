@@ -62,8 +62,9 @@ def single_scattering(
                 rule = partial(along, shape, medium.phase, origin[i], d[i], sigma, start, end)
                 coarse, (value[i], noise) = rule(1)[0], rule(2)
                 error[i] = np.abs(value[i] - coarse) + noise + 256 * EPS * value[i]
-                unsure = (inside.sure_start[i] - start) + (end - inside.sure_end[i] if end < np.inf else 0.0)
-                error[i] += unsure
+                error[i] += inside.sure_start[i] - start
+                if end < np.inf:
+                    error[i] += (end - inside.sure_end[i]) * np.exp(-sigma * (inside.sure_end[i] - start))
         scale = np.atleast_1d(np.multiply(medium.sigma_s, light.radiance))
         error = np.where(scale > 0, scale * error + TINY, 0.0)
         value = np.where(scale > 0, scale * value, 0.0)

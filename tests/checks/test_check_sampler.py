@@ -169,7 +169,7 @@ SEEN = {
     "one azimuth a batch": ("sphere", {"sample": one_azimuth}, "serial correlation", "order of the rows"),
     "a curve that fills the sphere": ("sphere", {"sample": threaded, "samples": 10 * N}, "chi-square, fine joint", "correlation"),
     "few different numbers": (
-        "interval", {"sample": lambda u: 2 + 3 * np.floor(2**15 * u[:, 0]) / 2**15}, "repeated points", "atom"),
+        "interval", {"sample": lambda u: 2 + 3 * np.floor(2**15 * u[:, 0]) / 2**15}, "repeated points", "coarse numbers"),
     "the wrong measure": ("sphere", {"pdf": lambda x: np.full(len(x), 0.5)}, "normalisation", "wrong measure"),
     "cancellation": (
         "single precision", {"sample": float32_cosine}, "single against double precision", "cancellation"),

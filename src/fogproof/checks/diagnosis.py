@@ -29,6 +29,8 @@ CAUSES = (
     "wrong formula",
     "cancellation",
     "edge of the uniforms",
+    "repeated samples",
+    "coarse numbers",
     "dependent samples",
     "atom",
     "missing tail",

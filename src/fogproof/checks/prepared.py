@@ -24,6 +24,7 @@ from fogproof.checks.density.lookup import Lookup
 from fogproof.checks.density.model import Density, Effort, integrated, looked_at, looked_at_plane
 from fogproof.checks.density.quadrature import Leaves
 from fogproof.checks.edges import edge_uniforms, no_edge_uniforms
+from fogproof.checks.jacobian import jacobian_agreement
 from fogproof.checks.normalisation import FLOOR, albedo, effort, mean_cosine, normalisation, rounding_share
 from fogproof.checks.probes import cdf_agreement, precision_agreement, reference_agreement
 from fogproof.checks.promises import inside, usual_labels
@@ -116,7 +117,13 @@ class Prepared:
             pole = float(low + (1 - high))
         p = self.subject.density(points)
         return expected_repeats(
-            min(n, KEPT), self.subject.domain, self.subject.precision, points, np.where(np.isfinite(p), p, 0.0), pole
+            min(n, KEPT),
+            self.subject.domain,
+            self.subject.precision,
+            points,
+            np.where(np.isfinite(p), p, 0.0),
+            pole,
+            self.subject.uniform_bits,
         )
 
     def refined(self, tally: Tally) -> Prepared:
@@ -170,6 +177,7 @@ def prepare(subject: Subject, samples: int, seed: int) -> Prepared:
     else:
         labels = (claim.chart.axes[0].label, claim.chart.axes[1].label)
         grid, count = unit_square_grid(labels, samples), partial(_rosenblatt, subject)
+        findings.append(jacobian_agreement(subject, pilot.points))
     counter = _counter(subject, grid, count, ranges, pilot, fingerprinted=True)
     return Prepared(subject, samples, pilot, claim, counter, tuple(findings))
 

@@ -20,24 +20,31 @@ def reference_agreement(subject: Subject, points: np.ndarray) -> Finding:
     reference = subject.reference(points)
     p = subject.density(points)
     slack = reference.error + rounding_spread(subject.density, points, subject.roundoff)
-    return _agreement("pdf against the reference", p, np.broadcast_to(reference.value, p.shape), slack, points)
+    return agreement("pdf against the reference", p, np.broadcast_to(reference.value, p.shape), slack, points)
 
 
 def cdf_agreement(claimed: np.ndarray, right: np.ndarray, slack: np.ndarray, points: np.ndarray) -> Finding:
     """The increments (m,) of a given cdf must equal the integrals of the pdf over the same cells."""
-    return _agreement("cdf against the pdf", claimed, right, slack, points, "the cell that ends at")
+    return agreement("cdf against the pdf", claimed, right, slack, points, "the cell that ends at")
 
 
-def _agreement(
-    name: str, claimed: np.ndarray, right: np.ndarray, slack: np.ndarray, points: np.ndarray, at: str = "x ="
+def agreement(
+    name: str,
+    claimed: np.ndarray,
+    right: np.ndarray,
+    slack: np.ndarray,
+    points: np.ndarray,
+    at: str = "x =",
+    sharp: float = 1e-6,
 ) -> Finding:
+    """Return whether two arrays (m,) agree to within `slack`; ratios that differ by less than `sharp` are one constant."""
     gap = np.abs(claimed - right)
     worst = int(np.argmax(gap - slack))
     effect = float(np.max(gap / np.maximum(np.abs(right), 1e-300), initial=0.0))
     if not np.all(gap <= slack):
         message = f"{claimed[worst]:.9g} against {right[worst]:.9g}, at {at} {shorten(points[worst])}"
         ratio = claimed / np.where(right == 0, np.nan, right)
-        constant = np.nanmax(ratio) - np.nanmin(ratio) < 1e-6 * abs(np.nanmean(ratio))
+        constant = np.nanmax(ratio) - np.nanmin(ratio) < sharp * abs(np.nanmean(ratio))
         cause = "normalisation" if constant else "wrong formula"
         return Finding(name, "rejected", message, effect=effect, cause=cause)
     return Finding(name, "not rejected", f"equal within rounding at {len(right)} places", effect=effect)

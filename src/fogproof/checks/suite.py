@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from fogproof.checks.escalation import Test
+from fogproof.checks.few_values import few_values, few_values_axes
 from fogproof.checks.normalisation import FLOOR
 from fogproof.checks.prepared import Prepared
 from fogproof.checks.statistics.goodness import binomial, chi_square, chi_square_along, chi_square_sparse, kolmogorov
@@ -52,8 +53,12 @@ def tests_of(prepared: Prepared, tally: Tally) -> list[Test]:
             shares, blur = plane.shares[0][:, None] * plane.shares[1], plane.blur(plane.size)
             fine = tally.plane.ravel(), shares.ravel(), blur.ravel()
             add("fine joint", chi_square_sparse, "chi-square, fine joint", *fine)
-    add("serial correlation", serial_test, "serial correlation", tally.serial)
+    if not subject.quasi_random:
+        add("serial correlation", serial_test, "serial correlation", tally.serial)
     if prepared.counter.fingerprinted:
+        for coordinate in few_values_axes(subject):
+            drawn = prepared.pilot.points, tally.points
+            add("few values", few_values, f"different values of {coordinate}", subject, coordinate, *drawn)
         add("repeated points", repeats_test, "repeated points", tally.prints, prepared.expected_repeats)
     n = max(tally.drawn, 1)
     wrong_atom = "wrong probability of an atom"

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import base64
 import zlib
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 import numpy as np
@@ -38,6 +38,7 @@ class Tally:
     events   how often each declared event label came up
     serial   products of successive scores
     prints   fingerprints of the points of the first batches
+    points   the points of the first batch
     weights  moments of the returned weights, channel by channel
     strange  points whose density the quadrature does not know
     watch    what was seen of each promise
@@ -52,6 +53,7 @@ class Tally:
     events: dict[float, int]
     serial: Successions | None
     prints: np.ndarray
+    points: np.ndarray
     weights: tuple[Moments, ...]
     strange: np.ndarray
     watch: Watch = field(repr=False)
@@ -86,6 +88,7 @@ class Tally:
             {label: hits + other.events[label] for label, hits in self.events.items()},
             serial,
             np.concatenate([self.prints, other.prints])[:KEPT],
+            self.points if len(self.points) else other.points,
             weights,
             kept(self.strange, other.strange),
             self.watch.merged(other.watch),
@@ -102,10 +105,9 @@ class Tally:
             "extremes": _packed(self.extremes),
             "atoms": [[_written(point), hits] for point, hits in self.atoms.items()],
             "events": [[label, hits] for label, hits in self.events.items()],
-            "serial": None
-            if serial is None
-            else [[_packed(part) for part in (serial.sums, serial.products, serial.squares)], serial.n, serial.pairs],
+            "serial": None if serial is None else [_packed(getattr(serial, f.name)) for f in fields(serial)],
             "prints": _packed(self.prints),
+            "points": _packed(self.points),
             "weights": [moments.to_dict() for moments in self.weights],
             "strange": _packed(self.strange),
             "broken": {name: list(what) for name, what in self.watch.broken.items()},
@@ -125,8 +127,9 @@ class Tally:
             _unpacked(state["extremes"]),
             {_read(point): hits for point, hits in state["atoms"]},
             dict(state["events"]),
-            None if serial is None else _successions(serial),
+            None if serial is None else Successions(*map(_unpacked, serial)),
             _unpacked(state["prints"]),
+            _unpacked(state["points"]),
             tuple(Moments.from_dict(moments) for moments in state["weights"]),
             _unpacked(state["strange"]),
             replace(watch, broken=broken, seen=dict(state["seen"])),
@@ -166,6 +169,7 @@ class Counter:
             dict.fromkeys(map(float, self.subject.events), 0),
             None,
             np.empty(0, dtype=np.uint64),
+            np.empty((0, *self.subject.domain.shape)),
             (),
             np.empty(0),
             Watch(self.subject, self.labels),
@@ -194,21 +198,30 @@ class Counter:
         hits = {point: int(np.count_nonzero(where)) for point, where in subject.at_atom(draw.x).items()}
         labels = np.empty(0) if draw.event is None else draw.event
         events = {float(label): int(np.count_nonzero(labels == label)) for label in subject.events}
-        serial = Successions.of([s[c] for s, c in zip(self.scores, cells, strict=True)]) if len(points) else None
-        remembered = self.fingerprinted and index * BATCH < KEPT
+        first = index * BATCH < KEPT
+        serial = Successions.of([s[c] for s, c in zip(self.scores, cells, strict=True)], first) if len(points) else None
+        remembered = self.fingerprinted and first
         prints = fingerprints(points) if remembered else np.empty(0, dtype=np.uint64)
+        kept_points = points if index == 0 else np.empty((0, *subject.domain.shape))
         weights: tuple[Moments, ...] = ()
         if draw.weight is not None:
             columns = draw.weight.reshape(len(draw.x), -1).T
             weights = tuple(Moments.of(np.ascontiguousarray(column)) for column in columns)
         return Tally(
-            (index,), len(draw.x), fine, plane, extremes, hits, events, serial, prints, weights, strange[:4096], watch
+            (index,),
+            len(draw.x),
+            fine,
+            plane,
+            extremes,
+            hits,
+            events,
+            serial,
+            prints,
+            kept_points,
+            weights,
+            strange[:4096],
+            watch,
         )
-
-
-def _successions(state: list[Any]) -> Successions:
-    sums, products, squares = (_unpacked(part) for part in state[0])
-    return Successions(sums, products, squares, state[1], state[2])
 
 
 def _written(point: Any) -> Any:

@@ -11,13 +11,17 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fogproof.checks.statistics.tails import poisson_at_least
+from fogproof.checks.statistics.goodness import MISS
+from fogproof.checks.statistics.tails import binomial_at_most, poisson_at_least
 from fogproof.checks.subject import Precision
-from fogproof.checks.verdict import Finding, Outcome
+from fogproof.checks.verdict import Finding, Resolution
 from fogproof.domains import Domain, UnitHemisphere, UnitSphere
 
 KEPT = 1 << 18
 """Most points whose fingerprints are kept."""
+
+_WINDOW = 32  # neighbours on either side that tell how far apart values are
+_EQUAL = 1e-6  # of that distance
 
 _SLACK = 8.0  # how much coarser than the result the numbers inside a sampler may be
 _UNIFORM: dict[Precision, float] = {"float64": 2.0**-53, "float32": 2.0**-24}
@@ -58,12 +62,19 @@ def repeated(prints: np.ndarray) -> int:
 
 
 def expected_repeats(
-    n: int, domain: Domain, precision: Precision, points: np.ndarray, density: np.ndarray, pole_mass: float
+    n: int,
+    domain: Domain,
+    precision: Precision,
+    points: np.ndarray,
+    density: np.ndarray,
+    pole_mass: float,
+    bits: int | None = None,
 ) -> float:
     """Return about how many repetitions a right sampler may show among n points.
 
     points, density  a pilot sample (q, ...) and the claimed density there (q,)
     pole_mass        probability of the points so near a pole that rounding can merge them all
+    bits             of the sampler's uniforms, if they are declared
     """
     roundoff = 0.5 * _UNIFORM[precision] if precision == "float64" else _UNIFORM[precision]
     pairs = 0.5 * n * n
@@ -76,19 +87,83 @@ def expected_repeats(
         turn = 2 * np.pi if isinstance(domain, (UnitSphere, UnitHemisphere)) else 1.0
         cell = np.full(len(points), 16 * roundoff**2 * turn)
         uniforms = 2.0**-48 if precision == "float32" else 2.0**-53
+    if bits is not None:
+        uniforms = max(uniforms, 2.0 ** (-bits * min(2, points.ndim)))
     return float(n * pole_mass + pairs * (uniforms + np.mean(np.minimum(density * cell, 1.0))))
 
 
 def repeats_test(name: str, prints: np.ndarray, expected: Callable[[int], float], alpha: float) -> Finding:
     """Test that there are no more repetitions than the float grid explains: a Poisson bound.
 
-    prints    (n,) fingerprints
+    prints    (n,) fingerprints, in the order in which the points were drawn
     expected  n -> about how many repetitions rounding explains
     """
     n, seen = len(prints), repeated(prints)
     allowed = _SLACK * expected(n)
     p = poisson_at_least(seen, max(allowed, 1e-300))
-    outcome: Outcome = "rejected" if p <= alpha else "not rejected"
     message = f"{seen} of the first {n} points repeat an earlier one; rounding explains up to about {allowed:.2g}"
-    effect = seen / max(n, 1)
-    return Finding(name, outcome, message, p, alpha, False, seen, effect, cause="atom" if outcome == "rejected" else "")
+    resolution = Resolution("probability of an undeclared atom", _smallest_atom(n, allowed, alpha), MISS)
+    if p > alpha:
+        return Finding(name, "not rejected", message, p, alpha, False, seen, seen / max(n, 1), resolution)
+    kind, cause = _kind_of_repetition(prints)
+    return Finding(name, "rejected", f"{message}: {kind}", p, alpha, False, seen, seen / n, resolution, cause=cause)
+
+
+def _smallest_atom(n: int, allowed: float, alpha: float) -> float:
+    """Return the probability of a point whose repetitions among n points are more than `allowed` explains, but for `MISS`."""
+    least = 1
+    while poisson_at_least(least, max(allowed, 1e-300)) > alpha:
+        least = max(least + 1, int(1.05 * least))
+    low, high = 0.0, 1.0
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if binomial_at_most(least, n, middle) > MISS else (low, middle)
+    return high
+
+
+def _kind_of_repetition(prints: np.ndarray) -> tuple[str, str]:
+    """Return in words how points repeat, and the cause that this points to."""
+    values, inverse, counts = np.unique(prints, return_inverse=True, return_counts=True)
+    extra, n = len(prints) - len(values), len(prints)
+    often = int(counts.max()) - 1
+    if often >= 0.5 * extra:
+        return f"one point comes {often + 1} times", "atom"
+    order = np.argsort(inverse, kind="stable")
+    again = np.diff(inverse[order]) == 0
+    apart = np.diff(order)[again]
+    distances, times = np.unique(apart, return_counts=True)
+    if times.max() >= 0.5 * extra and extra >= 0.01 * n:
+        far = int(distances[np.argmax(times)])
+        where = "right after the first time" if far == 1 else f"{far} points later"
+        return f"a share of {times.max() / n:.2g} comes again {where}", "repeated samples"
+    if counts.mean() > 1.5 or counts.max() < 4:
+        return f"there are {len(values)} different points among {n}: numbers of few bits", "coarse numbers"
+    return f"{int(np.count_nonzero(counts > 1))} different points come more than once", "repeated samples"
+
+
+def coarse_test(name: str, label: str, t: np.ndarray, rounding: float, bits: int, alpha: float) -> Finding:
+    """Test that one coordinate takes as many different values as its samples are: numbers of few bits do not.
+
+    t         (n,) values of a coordinate whose law is continuous, in any unit; neighbours closer than 1e-6 of the spacing around
+              them count as equal
+    rounding  what rounding of the points can change about a value
+    bits      of the uniforms that the sampler uses
+    """
+    n = len(t)
+    if n < _WINDOW * 4:
+        return Finding(name, "not rejected", "too few samples to see numbers of few bits", 1.0, alpha)
+    t = np.sort(t)
+    gap = np.diff(t)
+    ends = np.clip(np.arange(n - 1)[:, None] + (-_WINDOW, _WINDOW), 0, n - 1)
+    spacing = (t[ends[:, 1]] - t[ends[:, 0]]) / (ends[:, 1] - ends[:, 0])
+    seen = int(np.count_nonzero(gap <= _EQUAL * spacing))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        merged = np.where(spacing > 0, np.minimum(2 * rounding / spacing, 1.0), 1.0 if rounding > 0 else 0.0)
+    allowed = _SLACK * (n * _EQUAL + float(np.sum(merged)) + 0.5 * n * n * 2.0**-bits)
+    p = poisson_at_least(seen, allowed)
+    different = n - seen
+    message = f"{different} of {n} values of {label} differ; rounding explains up to about {allowed:.2g} equal ones"
+    if p > alpha:
+        return Finding(name, "not rejected", message, p, alpha, False, seen, seen / n)
+    values = f"{message}: {label} takes few values" if different < 0.9 * n else message
+    return Finding(name, "rejected", values, p, alpha, False, seen, seen / n, cause="coarse numbers")

@@ -1,58 +1,104 @@
-"""Serial correlation: does a sample know its predecessor?
+"""Serial correlation: does a sample know those before it?
 
-Sorted or stratified output, generators that start again, parameters that are set one call too late: the distribution can be perfect
-and the samples still not independent.
+Sorted, stratified or antithetic output, generators that start again, parameters that are set one call too late, numbers that the
+next sample uses once more: the distribution can be perfect and the samples still not independent. Looked at are lags of 1 to 64,
+within each axis and across, and the two halves of a call.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, fields
 
 import numpy as np
 
-from fogproof.checks.statistics.tails import chi_square_above
-from fogproof.checks.verdict import Finding, Outcome
+from fogproof.checks.statistics.goodness import MISS
+from fogproof.checks.statistics.tails import normal_quantile
+from fogproof.checks.verdict import Finding, Outcome, Resolution
 
-_UNIT = 2.0**15
+LAGS = 64
+_UNIT = 2.0**15  # of scores, for the lag of 1
+_BITS = 9  # dropped of them for the others: products of what is left are exact in single precision
 _STRONG = 0.5  # a correlation that leaves little of the sample
+_ANTITHETIC = 0.4  # half of the pairs of neighbours are no antithetic pair
+_LEAST = 100  # pairs
 
 
 @dataclass(frozen=True)
 class Successions:
-    """Sums over the scores (n, k) of one stream of samples, less their claimed mean 1/2, in whole units of 2^-15.
+    """Sums over the scores (n, k) of one stream of samples, less their claimed mean 1/2, as whole numbers.
 
     Whole numbers add up to the same in any order: batches may be counted anywhere.
 
-    sums      (k,) of the scores
-    products  (k, k) of each sample's scores with the next one's
-    squares   (k, k) of each sample's scores with its own
-    n, pairs  how many samples and how many successions
+    sums     (k,) of the scores, in units of 2^-15
+    squares  (k, k) of each sample's scores with its own
+    next     (k, k) of each sample's scores with the next one's
+    counts   (2,) how many samples and successions those are
+    coarse   (k,) as `sums`, in units of 2^-6, of the samples below
+    powers   (k, k) as `squares`
+    lagged   (64, k, k) of each sample's scores with those 1, 2, ... 64 later, among the first samples
+    halves   (k, k) of the scores in the first half of a call with those at the same place in its second half
+    many     (66,) how many samples, pairs of each lag, and pairs of halves those are
     """
 
     sums: np.ndarray
-    products: np.ndarray
     squares: np.ndarray
-    n: int
-    pairs: int
+    next: np.ndarray
+    counts: np.ndarray
+    coarse: np.ndarray
+    powers: np.ndarray
+    lagged: np.ndarray
+    halves: np.ndarray
+    many: np.ndarray
 
     @staticmethod
-    def of(d: list[np.ndarray]) -> Successions:
-        """Return the sums of one batch; d holds the scores (n,) of each axis, in units, see `in_units`."""
-        n = len(d[0])
+    def of(d: list[np.ndarray], first: bool) -> Successions:
+        """Return the sums of one batch; d holds the scores (n,) of each axis, in units, see `in_units`.
+
+        first  whether it is one of the first batches, in which all lags are looked at
+        """
+        n, k = len(d[0]), len(d)
         sums = np.array([one.sum() for one in d])
-        products = np.array([[np.einsum("i,i->", one[:-1], other[1:]) for other in d] for one in d])
         squares = np.array([[np.einsum("i,i->", one, other) for other in d] for one in d])
-        return Successions(sums, products, squares, n, max(n - 1, 0))
+        following = np.array([[np.einsum("i,i->", one[:-1], other[1:]) for other in d] for one in d])
+        counts = np.array([n, max(n - 1, 0)])
+        whole = n - n % LAGS if first else 0
+        c = [(one[:whole] >> _BITS).astype(np.float32) for one in d]
+        many = np.concatenate([[whole], np.maximum(whole - np.arange(1, LAGS + 1), 0), [whole // 2]])
+        products = [[np.rint(float(one @ other)) for other in c] for one in c]
+        half = [[np.rint(float(one[: whole // 2] @ other[whole - whole // 2 :])) for other in c] for one in c]
+        return Successions(
+            sums,
+            squares,
+            following,
+            counts,
+            np.array([int(one.sum(dtype=np.float64)) for one in c]),
+            np.array(products).astype(np.int64),
+            _lagged(c) if whole else np.zeros((LAGS, k, k), dtype=np.int64),
+            np.array(half).astype(np.int64),
+            many,
+        )
 
     def merged(self, other: Successions) -> Successions:
         """Return the sums of both streams."""
-        return Successions(
-            self.sums + other.sums,
-            self.products + other.products,
-            self.squares + other.squares,
-            self.n + other.n,
-            self.pairs + other.pairs,
-        )
+        return Successions(*(getattr(self, f.name) + getattr(other, f.name) for f in fields(self)))
+
+
+def _lagged(c: list[np.ndarray]) -> np.ndarray:
+    """Return (64, k, k) sums of products of scores 1 to 64 apart, by two matrix products over rows of 64 samples."""
+    k = len(c)
+    rows = np.concatenate([one.reshape(-1, LAGS) for one in c], axis=1)
+    place = np.arange(LAGS)
+    apart = place - place[:, None]
+    result = np.zeros((LAGS + 1, k, k))
+    for gram, shift in ((rows.T @ rows, 0), (rows[:-1].T @ rows[1:], LAGS)):
+        lag = (apart + shift).ravel()
+        used = (lag >= 1) & (lag <= LAGS)
+        for a in range(k):
+            for b in range(k):
+                block = gram[a * LAGS : (a + 1) * LAGS, b * LAGS : (b + 1) * LAGS].ravel()
+                result[:, a, b] += np.bincount(lag[used], block[used], LAGS + 1)
+    return np.rint(result[1:]).astype(np.int64)
 
 
 def in_units(scores: np.ndarray) -> np.ndarray:
@@ -61,25 +107,63 @@ def in_units(scores: np.ndarray) -> np.ndarray:
 
 
 def serial_test(name: str, sums: Successions | None, alpha: float) -> Finding:
-    """Test that successive samples are uncorrelated, within each axis and across: chi-square with k^2 degrees of freedom."""
-    none = Finding(name, "not rejected", "too few different samples to see a correlation", 1.0, alpha)
-    if sums is None:
-        return none
-    k = len(sums.products)
-    mean = sums.sums / (max(sums.n, 1) * _UNIT)
-    covariance = sums.squares / (max(sums.n, 1) * _UNIT**2) - np.outer(mean, mean)
-    if sums.pairs < 100 or not np.linalg.det(covariance) > 1e-12 * (1 / 12) ** k:
-        return none
-    inverse = np.linalg.inv(covariance)
-    r = sums.products / (sums.pairs * _UNIT**2) - np.outer(mean, mean)
-    statistic = float(sums.pairs * np.trace(inverse @ r @ inverse @ r.T))
-    p = chi_square_above(k * k, statistic)
+    """Test that samples are uncorrelated with the next one, with those up to 64 later, and with the other half of their call.
+
+    Products of centred scores of independent samples are martingale differences, so Bernstein's inequality (Freedman 1975) bounds
+    the tail of their sum whatever the law of the scores; half the level goes to the next sample, half to all other pairs together.
+    """
+    if sums is None or sums.counts[1] < _LEAST:
+        return Finding(name, "not rejected", "too few samples to see a correlation", 1.0, alpha)
+    mean, variance = _moments(sums.sums, sums.squares, int(sums.counts[0]))
+    best = _largest(sums.next[None], sums.counts[1:], mean, variance, _UNIT / 2)
+    what, tries = "of successive samples", 2.0 * sums.next.size
+    if sums.many[0] >= _LEAST * LAGS:
+        mean, variance = _moments(sums.coarse, sums.powers, int(sums.many[0]))
+        products = np.concatenate([sums.lagged[1:], sums.halves[None]])
+        other = _largest(products, sums.many[2:], mean, variance, _UNIT / 2**_BITS / 2)
+        rivals = 2.0 * products.size
+        if other.p * rivals < best.p * tries:
+            place = other.index // sums.next.size
+            what = "of the two halves of a call" if place == LAGS - 1 else f"of samples {place + 2} apart"
+            best, tries = other, rivals
+    p = min(1.0, best.p * tries)
     rejected = p <= alpha
     outcome: Outcome = "rejected" if rejected else "not rejected"
-    scale = np.sqrt(np.diag(covariance))
-    coefficient = r / np.outer(scale, scale)
-    largest = float(coefficient.flat[np.argmax(np.abs(coefficient))])
-    message = f"correlation of successive samples is {largest:+.3g}"
-    exact = sums.pairs >= 1000
-    cause = "dependent samples" if abs(largest) > _STRONG else "correlation"
-    return Finding(name, outcome, message, p, alpha, exact, statistic, largest, cause=cause if rejected else "")
+    message = f"the largest correlation, {what}, is {best.coefficient:+.3g}"
+    message += ": an antithetic stream" if rejected and best.coefficient < -_ANTITHETIC else ""
+    cause = "dependent samples" if abs(best.coefficient) > _STRONG else "correlation"
+    pairs = int(sums.many[1]) if sums.many[0] else int(sums.counts[1])
+    critical = math.sqrt(2 * math.log(2 * 2.0 * LAGS * sums.next.size / alpha)) + normal_quantile(MISS)
+    seen = Resolution(f"correlation at a lag up to {LAGS}", min(critical / math.sqrt(max(pairs, 1)), 1.0), MISS)
+    return Finding(
+        name, outcome, message, p, alpha, False, best.z, best.coefficient, seen, cause=cause if rejected else ""
+    )
+
+
+@dataclass(frozen=True)
+class _Largest:
+    """The most conspicuous of many sums of products: a bound on its own p-value, its z, its correlation, and which one it is."""
+
+    p: float
+    z: float
+    coefficient: float
+    index: int
+
+
+def _moments(sums: np.ndarray, squares: np.ndarray, n: int) -> tuple[np.ndarray, np.ndarray]:
+    mean = sums / n
+    return mean, np.maximum(np.diag(squares) / n - mean**2, 0.0)
+
+
+def _largest(products: np.ndarray, pairs: np.ndarray, mean: np.ndarray, variance: np.ndarray, bound: float) -> _Largest:
+    """Return the largest of sums of products (m, k, k) over `pairs` (m,) pairs of scores within +-`bound`."""
+    number = np.maximum(pairs, 1)[:, None, None]
+    excess = products - number * np.outer(mean, mean)
+    spread = number * np.outer(variance, variance)
+    limit = (bound + np.abs(mean).max()) ** 2
+    with np.errstate(divide="ignore", invalid="ignore"):
+        exponent = np.where(spread > 0, excess**2 / (2 * (spread + limit * np.abs(excess) / 3)), 0.0)
+        z = np.where(spread > 0, excess / np.sqrt(spread), 0.0)
+    i = int(np.argmax(exponent))
+    coefficient = float((z / np.sqrt(number)).flat[i])
+    return _Largest(min(1.0, 2 * math.exp(-float(exponent.flat[i]))), float(z.flat[i]), coefficient, i)

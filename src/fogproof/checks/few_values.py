@@ -1,0 +1,35 @@
+"""Does every coordinate take as many different values as a continuous law does, or is one of them made of few bits?
+
+A 16-bit cosine beside a fine azimuth never repeats a point: each coordinate of the domain's known law is looked at by itself.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fogproof.checks.statistics.repeats import coarse_test
+from fogproof.checks.subject import Subject, nudged
+from fogproof.checks.verdict import Finding
+
+_NUDGED = 2048  # points that show what rounding does to a coordinate
+
+
+def few_values_axes(subject: Subject) -> tuple[str, ...]:
+    """Return the coordinates to look at: none on domains of one, whose points themselves would repeat, or with steps."""
+    law = subject.domain.law(np.empty((0, *subject.domain.shape)))
+    return () if subject.domain.shape == () or law.stepped else law.axes
+
+
+def few_values(name: str, subject: Subject, axis: str, pilot: np.ndarray, points: np.ndarray, alpha: float) -> Finding:
+    """Test one coordinate of points (n, k); the pilot's set the scale of the domain's law."""
+    law = subject.domain.law(pilot)
+    column = law.axes.index(axis)
+
+    def coordinate(x: np.ndarray) -> np.ndarray:
+        return law.coordinates(x, np.full((len(x), len(law.axes)), 0.5))[:, column]
+
+    shown = points[:_NUDGED]
+    moves = [np.abs(coordinate(moved) - coordinate(shown)) for moved in nudged(shown, subject.roundoff)]
+    moves = [np.minimum(move, 1 - move) for move in moves]
+    rounding = float(np.median(np.max(moves, axis=0))) if len(shown) else 0.0
+    return coarse_test(name, axis, coordinate(points), rounding + 4 * subject.roundoff, subject.bits, alpha)

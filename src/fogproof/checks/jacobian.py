@@ -1,0 +1,76 @@
+"""A given Rosenblatt map against the pdf: the determinant of its derivative is the density, or one of the two is wrong.
+
+Both are functions, so no sample and no integral is needed: F(x) is differentiated numerically along the coordinates of the domain's
+known law, in which |det dF/du| is the ratio of the pdf to that law's density (Rosenblatt 1952). Steps of several sizes must agree
+before a derivative is believed, so that jumps and corners of F are passed over, not judged.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from fogproof.checks.probes import agreement
+from fogproof.checks.subject import Subject, call, numbers, rounding_spread
+from fogproof.checks.verdict import Finding
+
+Map = Callable[[np.ndarray], np.ndarray]
+
+_NAME = "cdf against the pdf"
+_POINTS = 2048
+_STEPS = (1e-4, 1e-5, 1e-6, 1e-7)  # of the way to the nearer end of an axis
+_AGREE = 1e-4  # relative difference of two steps' determinants, below which the smaller one is believed
+_TOLERANCE = 1e-3  # relative difference from the pdf that is never rejected
+_FEW = 3  # points that differ may do so by chance
+_TOO_FEW = 0.25  # of the points: with fewer derivatives nothing is said
+
+
+def jacobian_agreement(subject: Subject, points: np.ndarray) -> Finding:
+    """Compare the pdf with the derivative of the given cdf at sampled points (n, ...) of a domain of two or more coordinates."""
+    points = points[:_POINTS]
+    law = subject.domain.law(points)
+    u = law.coordinates(points, np.full((len(points), len(law.axes)), 0.5))
+
+    def rosenblatt(v: np.ndarray) -> np.ndarray:
+        assert subject.cdf is not None
+        return numbers("cdf(x)", call("cdf(x)", subject.cdf, law.place(v)), v.shape)
+
+    ratio = _determinants(rosenblatt, u)
+    claimed, known = subject.density(points), law.density(points)
+    good = np.isfinite(ratio) & np.isfinite(claimed)
+    if np.mean(good) < _TOO_FEW:
+        message = f"the given cdf has a derivative at {np.mean(good):.0%} of the samples only: its pdf cannot be told"
+        return Finding(_NAME, "inconclusive", message)
+    points, claimed, right = points[good], claimed[good], (ratio * known)[good]
+    slack = _TOLERANCE * (np.abs(right) + np.abs(claimed)) + rounding_spread(subject.density, points, subject.roundoff)
+    off = np.abs(claimed - right) > slack
+    if 0 < np.count_nonzero(off) <= _FEW:
+        points, claimed, right, slack = points[~off], claimed[~off], right[~off], slack[~off]
+    return agreement(_NAME, claimed, right, slack, points, "pdf and derivative of the cdf at x =", _TOLERANCE)
+
+
+def _determinants(f: Map, u: np.ndarray) -> np.ndarray:
+    """Return (n,) |det df/du| at u (n, k), NaN where no two steps agree."""
+    found = np.full(len(u), np.nan)
+    before = None
+    for step in _STEPS:
+        now = _determinant(f, u, step)
+        if before is not None:
+            agree = np.abs(now - before) <= _AGREE * np.maximum(np.abs(now), np.abs(before))
+            found = np.where(np.isnan(found) & agree, now, found)
+        before = now
+    return found
+
+
+def _determinant(f: Map, u: np.ndarray, step: float) -> np.ndarray:
+    n, k = u.shape
+    matrix = np.empty((n, k, k))
+    for axis in range(k):
+        h = step * np.minimum(u[:, axis], 1 - u[:, axis])
+        low, high = u.copy(), u.copy()
+        low[:, axis] -= h
+        high[:, axis] += h
+        with np.errstate(all="ignore"):
+            matrix[:, :, axis] = (f(high) - f(low)) / (high[:, axis] - low[:, axis])[:, None]
+    return np.abs(np.linalg.det(matrix))
