@@ -30,7 +30,16 @@ ALMOST_ISOTROPIC = HenyeyGreenstein(1e-18)
 
 
 @pytest.mark.parametrize(
-    ("c", "tau", "mu0"), [(0.5, 75.0, 1.0), (0.9, 50.0, 1.0), (0.99, 300.0, 0.2), (0.9, 1e-9, 0.7), (0.2, 1.0, 1e-4)]
+    ("c", "tau", "mu0"),
+    [
+        (0.5, 75.0, 1.0),
+        (0.9, 50.0, 1.0),
+        (0.99, 300.0, 0.2),
+        (0.9, 1e-9, 0.7),
+        (0.2, 1.0, 1e-4),
+        (1e-6, 0.3, 0.5),
+        (1 - 2.0**-53, 1e4, 0.05),
+    ],
 )
 def test_many_digit_arithmetic(c, tau, mu0):
     truth = slab_truth(c, tau, mu0, step=1 / 16)
