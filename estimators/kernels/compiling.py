@@ -4,7 +4,8 @@ Kernels live in this folder. Its files, save this one, import numba, and nobody 
 each other. So `import fogproof` stays light, and what compiles when can be seen from the names.
 
 numba's own cache looks at the file of the outermost function alone: after an edit of a function it calls in another file, a
-new process would still run the old machine code. Here the directory of the cache is named after a hash of all kernel files.
+new process would still run the old machine code. Here the directory of the cache is named after a hash of all kernel files and
+those of the media.
 """
 
 from __future__ import annotations
@@ -19,6 +20,9 @@ from pathlib import Path
 from typing import Any
 
 _LOCK = threading.RLock()
+_MEDIA = Path(__file__).parents[1] / "media"
+"""Where each kind of medium says how kernels look it up."""
+
 KERNEL_OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
 
 
@@ -67,7 +71,7 @@ def cache_directory(sources: Path) -> Path | None:
 
     root = Path(numba.config.CACHE_DIR) if numba.config.CACHE_DIR else _user_cache()
     words = hashlib.blake2b(f"{sys.version} {numba.__version__}".encode(), digest_size=10)
-    for file in sorted({*sources.glob("*.py"), Path(__file__)}):
+    for file in sorted({*sources.glob("*.py"), *_MEDIA.glob("*.py"), Path(__file__)}):
         words.update(file.read_bytes())
     directory = root / f"kernels-{words.hexdigest()}"
     try:

@@ -10,12 +10,12 @@ import numpy as np
 
 from fogproof.contracts import Draws
 from fogproof.errors import InvalidValueError, UnsupportedError
-from fogproof.estimators.grey import grey
 from fogproof.estimators.kernels.path_data import Plan
+from fogproof.estimators.media import ROOM
 from fogproof.estimators.paths import data as path_data
 from fogproof.estimators.paths.tracer import ENDLESS, trace, whole
 from fogproof.estimators.tracking.majorant_grid import MajorantGrid
-from fogproof.scene import AnyMedium, Isotropic, Medium, PhaseFunction
+from fogproof.scene import AnyMedium, Isotropic, PhaseFunction
 from fogproof.scene.kinds import given
 from fogproof.scene.shapes import Shape
 from fogproof.validate import number
@@ -109,7 +109,8 @@ class ScatteringsUnderUniformSky:
     @cached_property
     def _scene(self) -> tuple[Any, ...]:
         plan = Plan(1.0, 0.0, 1.0, False, True, ENDLESS, -1.0, ENDLESS, 1.0, ENDLESS)
-        medium = Medium(0.0, grey("sigma_s", self.medium.sigma_s)) if isinstance(self.medium, Medium) else self.medium
+        scattering = given(self.medium, ROOM, "without_absorption")
+        medium = self.medium if scattering is None else scattering(self.medium)
         data, bound = path_data.medium_and_bound(medium, self.shape, self.majorant)
         lobe = path_data.lobe(self.medium.phase)
         return data, bound, path_data.region(self.shape), lobe, path_data.lamp(None), path_data.wall(None), plan

@@ -15,7 +15,6 @@ import numpy as np
 from fogproof.contracts import Draws
 from fogproof.errors import InvalidValueError, UnsupportedError
 from fogproof.estimators.free_paths.fog import everywhere
-from fogproof.estimators.kernels.data import ChromaticFieldData, FieldData
 from fogproof.estimators.kernels.path_data import Plan
 from fogproof.estimators.paths import data as path_data
 from fogproof.estimators.tracking.majorant_grid import MajorantGrid
@@ -165,7 +164,7 @@ def run(
     from fogproof.estimators.kernels.compiling import uncached
 
     paths = Paths(np.empty((n, columns)), np.empty(n), np.empty(n, np.int64), np.empty(n))
-    if isinstance(scene[0], FieldData | ChromaticFieldData):
+    if getattr(scene[0], "of_user", False):
         kernel = uncached(kernel)
     refuse(*kernel(rng, *scene, np.array(origin), np.array(direction), *paths))
     return paths

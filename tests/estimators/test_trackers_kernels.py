@@ -45,7 +45,7 @@ def test_an_edited_callee_is_compiled_again(tmp_path: Path) -> None:
     again, hits = run(TRANSMITTANCE, copy, cache).split()
     assert (again, hits) == (first, "1")
 
-    callee = copy / "fogproof" / "estimators" / "kernels" / "media.py"
+    callee = copy / "fogproof" / "estimators" / "media" / "exponential.py"
     text = callee.read_text()
     assert text.count("return medium.sigma_0[channel] * np.exp(") == 1
     callee.write_text(text.replace("return medium.sigma_0[channel] * np.exp(", "return 0.0 * np.exp("))

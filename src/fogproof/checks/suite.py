@@ -13,7 +13,8 @@ from fogproof.checks.few_values import few_values, few_values_axes
 from fogproof.checks.normalisation import FLOOR
 from fogproof.checks.prepared import Prepared
 from fogproof.checks.statistics.goodness import binomial, chi_square, chi_square_along, chi_square_sparse, kolmogorov
-from fogproof.checks.statistics.means import Moments, mean_test
+from fogproof.checks.statistics.means import mean_test
+from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.statistics.repeats import repeats_test
 from fogproof.checks.statistics.scan import blocks, scan, scan_ends, scan_plane
 from fogproof.checks.statistics.serial import serial_test

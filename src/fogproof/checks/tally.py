@@ -16,7 +16,7 @@ import numpy as np
 from fogproof.checks.density.features import Ranges, kept
 from fogproof.checks.density.grid import Grid
 from fogproof.checks.promises import Watch
-from fogproof.checks.statistics.means import Moments
+from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.statistics.repeats import KEPT, fingerprints
 from fogproof.checks.statistics.serial import Successions
 from fogproof.checks.streams import BATCH

@@ -12,7 +12,7 @@ from itertools import groupby, islice
 
 import numpy as np
 
-from fogproof.checks.statistics.means import Moments
+from fogproof.checks.statistics.moments import Moments
 from fogproof.study.batches import COLUMNS, TAIL_SHARE
 from fogproof.study.cells import Cell
 from fogproof.study.plan import Batches, Stretch
