@@ -38,8 +38,8 @@ BLOCK = 65_536
 VIEWS = 32
 """Directions looked from at a time."""
 
-THINNEST = 1e-290
-"""Thickness below which everything scattered or absorbed is proportional to it."""
+FAINT, THINNEST = 1e-30, 1e-200
+"""Albedo and thickness below which everything scattered (for the thickness, or absorbed) is proportional to them."""
 
 
 class Moments(NamedTuple):
@@ -91,6 +91,8 @@ def doubled_values(
                 continue
             difference = np.abs(found - before)
             value[todo], error[todo] = found, difference + rounding + 2 * TINY
+            if mu0 is not None:  # both so small that their quotient is lost where tau is raised to THINNEST
+                error[todo] += (tau[todo] < THINNEST) & (mu0[todo] < 1e16 * tau[todo])
             more = difference > np.maximum(ENOUGH * np.abs(found), rounding)
             todo, before = todo[more], found[more]
         if quantity == "transmitted" and mu0 is not None:
@@ -121,8 +123,10 @@ def _solution(
     smallest = np.full(len(needed), 1.0)
     if mu0 is not None:
         np.minimum.at(smallest, mine, mu0[todo])
-    slabs = scaled(pairs[needed, 0], np.maximum(pairs[needed, 1], THINNEST), chi[: MOMENTS * n + 1])
-    thinner = pairs[needed, 1] / np.maximum(pairs[needed, 1], THINNEST)
+    albedo, thick = np.maximum(pairs[needed, 0], FAINT), np.maximum(pairs[needed, 1], THINNEST)
+    slabs = scaled(albedo, thick, chi[: MOMENTS * n + 1])
+    thinner = pairs[needed, 1] / thick
+    fewer = thinner * (pairs[needed, 0] / albedo)
     panels = np.ceil(-np.log(np.clip(np.minimum(slabs.tau, 10 * smallest) * 3, 1e-20, 1)) / math.log(6))
     for kind in np.unique(panels):
         alike = np.flatnonzero(panels == kind)
@@ -135,8 +139,9 @@ def _solution(
             position[block] = np.arange(len(block))
             here = np.flatnonzero(position[mine] >= 0)
             some = slabs._replace(albedo=slabs.albedo[block], absorbed=slabs.absorbed[block], tau=slabs.tau[block])
+            less = (thinner if quantity == "absorbed" else fewer)[block, None]
             if mu0 is None:
-                seen = _seen(some, mu, w, np.empty(0), quantity)
+                seen = _seen(some, mu, w, np.empty(0), less, quantity)
                 diffuse = 2 * w * mu
                 result = [x @ diffuse for x in seen]
                 for target, found in zip((value, collisions), result, strict=True):
@@ -144,18 +149,16 @@ def _solution(
                 continue
             cosines, view = np.unique(mu0[todo[here]], return_inverse=True)
             for first in range(0, len(cosines), VIEWS):
-                seen = _seen(some, mu, w, cosines[first : first + VIEWS], quantity)
+                seen = _seen(some, mu, w, cosines[first : first + VIEWS], less, quantity)
                 asked = (view >= first) & (view < first + VIEWS)
                 there = here[asked]
                 at = position[mine[there]], len(mu) + view[asked] - first
                 value[there], collisions[there] = seen[0][at], seen[1][at]
-    if quantity != "transmitted":
-        value = value * thinner[mine]
-    return value, collisions
+    return value, collisions * thinner[mine]
 
 
 def _seen(
-    slabs: Scaled, mu: np.ndarray, w: np.ndarray, aside: np.ndarray, quantity: Quantity
+    slabs: Scaled, mu: np.ndarray, w: np.ndarray, aside: np.ndarray, less: np.ndarray, quantity: Quantity
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the quantity at nodes and at directions aside, and the mean number of collisions, (b, n) each."""
     between = medium(slabs, mu, w, aside)
@@ -163,9 +166,9 @@ def _seen(
     root = np.sqrt(2 * between.mu * between.w)
     glow = found.glow / root
     if quantity == "reflected":
-        value = (found.R @ root) / root
+        value = less * ((found.R @ root) / root)
     elif quantity == "transmitted":
-        value = (found.T @ root) / root + found.ray
+        value = less * ((found.T @ root) / root) + found.ray
     else:
-        value = slabs.absorbed[:, None] * glow
+        value = less * slabs.absorbed[:, None] * glow
     return value, glow
