@@ -40,7 +40,7 @@ def _way(shape: Shape, x: np.ndarray, direction: np.ndarray, length: np.ndarray)
         return np.nan_to_num(np.maximum(np.minimum(leave, length) - np.maximum(enter, 0.0), 0.0), posinf=np.inf)
 
     way = inside(np.zeros(len(x)))
-    margin = 32 * EPS * (np.abs(x).max(axis=1, initial=0.0) + size_of(shape))
+    margin = 16 * EPS * (np.abs(x).max(axis=1, initial=0.0) + size_of(shape))
     margin = margin + 8 * EPS * np.where(way < np.inf, way, 0.0)
     low, high = inside(-margin), inside(margin)
     return way, np.where(high > low, np.maximum(high - way, way - low), 0.0)

@@ -20,6 +20,9 @@ NODES = (8, 14, 24, 40, 68)
 TOLERANCE = 1e-11
 """Relative difference of two rules that is small enough."""
 
+LARGEST = 1 << 13
+"""Most directions of a rule: what is missing then stands in the error."""
+
 SIZE = 1 << 18
 """Directions evaluated at a time."""
 
@@ -67,6 +70,8 @@ def received(x: np.ndarray, rule: Rule, total: Received, channels: int) -> tuple
         if not len(left):
             break
         size = rule(x[left[:1]], nodes).weight.shape[1]
+        if level > 1 and size > LARGEST:
+            break
         step = max(1, SIZE // size)
         found, noise = np.empty((2, len(left), channels))
         for i in range(0, len(left), step):

@@ -55,8 +55,10 @@ class Placement(NamedTuple):
         return hypot(np.maximum(np.maximum(self.a, -self.b), 0.0), self.h)
 
 
-def place(ray: Ray | FlatRays, position: tuple[float, float, float]) -> Placement:
+def place(ray: Ray | FlatRays, position: tuple[float, float, float], exact: bool = False) -> Placement:
     """Return the (flattened) rays in the coordinates of a light at `position`, in about twice the precision of float64.
+
+    exact  the coordinates are meant as they stand: what is left of `uncertainty` is the rounding of this precision
 
     The direction counts as d/|d|: h = |q x d| / |d| and a = -q.d / |d|, where q leads from the origin to the light.
     """
@@ -89,7 +91,8 @@ def place(ray: Ray | FlatRays, position: tuple[float, float, float]) -> Placemen
     b, b_low = sum_pair(a, np.where(endless, 0.0, length))
     b = np.where(endless, np.inf, b + (b_low + a_low))
     size = np.abs(origin).sum(axis=0) + np.abs(light).sum() + 2 * np.abs(q).sum(axis=0)
-    return Placement(h, h_low, a, a_low, b, length, near, near_low, q, q_low, direction, excess, EPS * size)
+    uncertainty = (64 * EPS * EPS if exact else EPS) * size
+    return Placement(h, h_low, a, a_low, b, length, near, near_low, q, q_low, direction, excess, uncertainty)
 
 
 def _across(near2: np.ndarray, near2_low: np.ndarray, a: np.ndarray, a_low: np.ndarray) -> Pair:

@@ -36,6 +36,7 @@ def single_scattering(
     occluders: Sequence[OccluderField] = (),
     shape: ShapeField | None = None,
     method: Method = "asinh",
+    exact: bool = False,
 ) -> Reference:
     """Return the single-scattered radiance (airlight) along camera rays [W/(m^2 sr)].
 
@@ -50,10 +51,13 @@ def single_scattering(
                light arrives: a directional light and an environment give 0 there
     method     how the airlight integral of a homogeneous medium is computed, see `airlight_integral`
 
+    exact      take the coordinates as they stand, and not as rounded by up to half a unit in the last place
+
     The result has shape R, or R + (C,) if medium or light have C channels. A light on the ray gives inf, a medium that
-    does not scatter 0. For homogeneous media `error` is a bound. It counts rounding, and half a unit in the last place of
-    each coordinate of the origin, the direction and the light: a direction in float64 is no better than that, and neither
-    is the answer. For other media, environments and shapes without the light in them it is an estimate by quadrature.
+    does not scatter 0. For homogeneous media `error` is a bound. It counts rounding, and unless `exact` half a unit in the last
+    place of each coordinate of the origin, the direction and the light: a direction in float64 is no better than that, and
+    neither is the answer for a light close to the ray. For other media, environments, light with extent and shapes without the
+    light in them it is an estimate by quadrature.
     Source: Sun, Ramamoorthi, Narasimhan & Nayar 2005, A practical analytic single scattering model (homogeneous, point).
     """
     shape = EVERYWHERE if shape is None else shape
@@ -69,7 +73,7 @@ def single_scattering(
         raise UnsupportedError(f"a {type(medium).__name__} has bounds of its own: leave the shape away", "shape")
     medium_channels = (0.0,) * medium.channels if medium.channels else 0.0
     channels = channel_count(medium=medium_channels, light=strength(light))
-    parts = [_along(medium, block, light, shape, occluders, method) for block in blocks_of(ray)]
+    parts = [_along(medium, block, light, shape, occluders, method, exact) for block in blocks_of(ray)]
     value, error = (np.concatenate(columns) for columns in list(zip(*parts, strict=True))[:2])
     result = ray.shape if channels is None else (*ray.shape, channels)
     value, error = (np.broadcast_to(x, (*x.shape[:-1], channels or 1)).reshape(result) for x in (value, error))
@@ -77,12 +81,20 @@ def single_scattering(
 
 
 def _along(
-    medium: AnyMedium, ray: FlatRays, light: Light, shape: Shape, occluders: Sequence[Occluder], method: Method
+    medium: AnyMedium,
+    ray: FlatRays,
+    light: Light,
+    shape: Shape,
+    occluders: Sequence[Occluder],
+    method: Method,
+    exact: bool,
 ) -> Result:
     """Return radiance and error (n, channels) of rays of shape (n,), method and source: in closed form, or by quadrature."""
     if light.distant and shape == EVERYWHERE and isinstance(medium, Medium):
         zero = np.zeros((len(ray.length), medium.channels or 1))
         return zero, zero, "no light arrives from infinitely far", "Beer's law"
     known = given(light, "fogproof.analytic.lights", "single_scattering")
-    found: Result | None = known and known(medium, ray, light, shape=shape, occluders=occluders, method=method)
-    return found or single_scattering_by_quadrature(medium, ray, light, shape, occluders)
+    found: Result | None = known and known(
+        medium, ray, light, shape=shape, occluders=occluders, method=method, exact=exact
+    )
+    return found or single_scattering_by_quadrature(medium, ray, light, shape, occluders, exact)

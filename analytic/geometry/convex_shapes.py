@@ -34,7 +34,7 @@ class Chord(NamedTuple):
 def chord(shape: Shape, ray: FlatRays) -> Chord:
     """Return where the flattened rays are in the shape, with a margin for the rounding of all coordinates."""
     origin, direction, length = ray.origin, ray.direction, ray.length
-    margin = 32 * EPS * (np.abs(origin).max(axis=1) + size_of(shape))
+    margin = 16 * EPS * (np.abs(origin).max(axis=1) + size_of(shape))
     reach = np.abs(np.nan_to_num(np.stack(through(shape, origin, direction, margin)), posinf=0.0, neginf=0.0))
     margin = margin + 8 * EPS * np.minimum(reach.max(axis=0), length)  # what the direction is off by, so far away
     start, end = through(shape, origin, direction, margin)
@@ -72,6 +72,23 @@ def through(
             enter = np.where((speed == 0) & (room < 0), np.nan, enter)
         missed = ~(enter <= leave)
         return np.where(missed, np.nan, enter), np.where(missed, np.nan, leave)
+
+
+def changes_of_face(shape: Shape, ray: FlatRays, position: tuple[float, float, float]) -> np.ndarray:
+    """Return (n, m) distances at which the way from a ray to a point leaves a polyhedron by another face; m = 0 for others.
+
+    A way from x to p crosses face i after the share room_i(x)/(room_i(x) - room_i(p)) of it, with room = offset - normal . x,
+    linear along the ray: two shares are equal at one place.
+    """
+    planes = faces(shape)
+    if planes is None or len(planes[1]) < 2:
+        return np.empty((len(ray.origin), 0))
+    normals, offsets = planes
+    beyond, room = offsets - normals @ np.array(position), offsets - ray.origin @ normals.T
+    speed = -(ray.direction @ normals.T)
+    i, j = np.triu_indices(len(offsets), 1)
+    with np.errstate(all="ignore"):
+        return -(room[:, i] * beyond[j] - room[:, j] * beyond[i]) / (speed[:, i] * beyond[j] - speed[:, j] * beyond[i])
 
 
 def size_of(shape: Shape) -> float:

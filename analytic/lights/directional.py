@@ -31,7 +31,7 @@ from fogproof.scene.shapes import Shape
 SOURCE = "Beer's law along both ways, integrated"
 
 
-def beam(light: DirectionalLight, _ray: FlatRays) -> Beam:
+def beam(light: DirectionalLight, _ray: FlatRays, _exact: bool) -> Beam:
     """Return the light for quadrature along rays."""
     return Beam(travel=np.array(light.direction))
 

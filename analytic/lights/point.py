@@ -16,13 +16,19 @@ from fogproof.scene.occluders import Occluder
 from fogproof.scene.shapes import Shape
 
 
-def beam(light: PointLight, ray: FlatRays) -> Beam:
+def beam(light: PointLight, ray: FlatRays, exact: bool) -> Beam:
     """Return the light for quadrature along rays."""
-    return Beam(place(ray, light.position))
+    return Beam(place(ray, light.position, exact))
 
 
 def single_scattering(
-    medium: AnyMedium, ray: FlatRays, light: PointLight, shape: Shape, occluders: Sequence[Occluder], method: Method
+    medium: AnyMedium,
+    ray: FlatRays,
+    light: PointLight,
+    shape: Shape,
+    occluders: Sequence[Occluder],
+    method: Method,
+    exact: bool,
 ) -> Result | None:
     """Return the airlight integral over the lit pieces of the rays, with a bound of its error."""
-    return from_a_point(medium, ray, light.position, light.intensity, beam(light, ray), shape, occluders, method)
+    return from_a_point(medium, ray, light.position, light.intensity, beam(light, ray, exact), shape, occluders, method)

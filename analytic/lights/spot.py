@@ -27,9 +27,9 @@ from fogproof.scene.occluders import Occluder
 from fogproof.scene.shapes import Shape
 
 
-def beam(light: SpotLight, ray: FlatRays) -> Beam:
+def beam(light: SpotLight, ray: FlatRays, exact: bool) -> Beam:
     """Return the light for quadrature along rays."""
-    where = place(ray, light.position)
+    where = place(ray, light.position, exact)
     outer, inner = _cosines(light)
     if inner == outer and light.exponent == 0:
         return Beam(where, edges=edges(where, light), weight=partial(lit_by_cone, where, light))
@@ -43,10 +43,16 @@ def beam(light: SpotLight, ray: FlatRays) -> Beam:
 
 
 def single_scattering(
-    medium: AnyMedium, ray: FlatRays, light: SpotLight, shape: Shape, occluders: Sequence[Occluder], method: Method
+    medium: AnyMedium,
+    ray: FlatRays,
+    light: SpotLight,
+    shape: Shape,
+    occluders: Sequence[Occluder],
+    method: Method,
+    exact: bool,
 ) -> Result | None:
     """Return the airlight integral over the lit pieces of the rays, with a bound of its error."""
-    return from_a_point(medium, ray, light.position, light.intensity, beam(light, ray), shape, occluders, method)
+    return from_a_point(medium, ray, light.position, light.intensity, beam(light, ray, exact), shape, occluders, method)
 
 
 def axis_products(where: Placement, light: SpotLight) -> tuple[np.ndarray, np.ndarray]:

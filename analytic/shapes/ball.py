@@ -81,7 +81,13 @@ def parallel_light(
         blur = 16 * EPS * (np.abs(origin[i]).max() + R) * (2 + np.minimum(R / half, EPS**-0.5))
         f = np.exp(-sigma[:, None, None] * path) * weights
         value[i] = f.sum(axis=(1, 2))
-        error[i] = (f * np.expm1(sigma[:, None, None] * blur)).sum(axis=(1, 2)) + 64 * EPS * value[i] + lost[i]
+        error[i] = (f * np.expm1(sigma[:, None, None] * blur)).sum(axis=(1, 2)) + 64 * EPS * value[i]
+        if lost[i] > 0:  # at the ends: no more arrives from there than this
+            ends, scale = np.array([start[i], end[i]]), np.abs(origin[i]).max() + R
+            gap = np.sum((Q0[i] + ends[:, None] * Q1[i]) ** 2, axis=1)
+            half = np.sqrt(np.maximum(R * R - gap - 64 * EPS * scale * scale, 0.0))
+            ways = ends - enter[owner[i]] + np.maximum(origin[i] @ v + ends * (d[i] @ v) + half, 0.0)
+            error[i] += lost[i] * np.exp(-sigma * max(float(ways.min()) - 16 * EPS * scale, 0.0))
     return value, error + TINY
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import get_args
 
@@ -15,13 +15,15 @@ from fogproof.estimators.airlight.occlusion import lit
 from fogproof.estimators.airlight.shadow_rays import ShadowRays, shadow_transmittance
 from fogproof.estimators.airlight.shapes import through
 from fogproof.estimators.free_paths.extinction import Extinction, along
-from fogproof.estimators.free_paths.fog import everywhere
+from fogproof.estimators.free_paths.fog import everywhere, shares
+from fogproof.estimators.media import ROOM
 from fogproof.estimators.phase.functions import phase_value
-from fogproof.scene import AnyMedium, Medium, PhaseFunction, Ray
+from fogproof.scene import AnyMedium, PhaseFunction, Ray
+from fogproof.scene.kinds import given
 from fogproof.scene.lights import Light
 from fogproof.scene.occluders import Occluder
 from fogproof.scene.phase import constant_phase
-from fogproof.scene.shapes import Shape, Unbounded
+from fogproof.scene.shapes import EVERYWHERE, Shape
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +42,7 @@ class LitMedium:
     ray: Ray
     light: Light
     occluders: tuple[Occluder, ...] = ()
-    shape: Shape = field(default_factory=Unbounded)
+    shape: Shape = EVERYWHERE
     shadow_rays: ShadowRays = "exact"
 
     def __post_init__(self) -> None:
@@ -50,7 +52,7 @@ class LitMedium:
             raise InvalidValueError(
                 "shadow_rays", f"must be one of {', '.join(get_args(ShadowRays))}", self.shadow_rays
             )
-        if not isinstance(self.shape, Unbounded) and not isinstance(self.medium, Medium):
+        if self.shape != EVERYWHERE and given(self.medium, ROOM, "uniform") is None:
             raise UnsupportedError("only a homogeneous medium fills a shape", "shape")
 
     @cached_property
@@ -78,7 +80,8 @@ class LitMedium:
     @cached_property
     def albedo(self) -> float:
         """sigma_s / sigma_t."""
-        return everywhere(self.medium)[0]
+        everywhere(self.medium)
+        return shares(self.medium)[0]
 
     @property
     def phase(self) -> PhaseFunction:
@@ -107,9 +110,10 @@ class LitMedium:
         """
         mu, distance, irradiance = self._illumination(self.start + t)
         value = self.albedo * self.extinction.sigma(t) * phase_value(self.phase, mu) * irradiance
-        plain = isinstance(self.medium, Medium) and isinstance(self.shape, Unbounded) and self.shadow_rays == "exact"
+        uniform = given(self.medium, ROOM, "uniform")
+        plain = uniform is not None and self.shape == EVERYWHERE and self.shadow_rays == "exact"
         if plain and not self.occluders:
-            sigma_t = float(np.asarray(self.medium.sigma_t))  # type: ignore[union-attr]
+            sigma_t = float(uniform(self.medium))
             return value * np.exp(-sigma_t * distance) if sigma_t > 0 else value, np.ones_like(t)
         x = self.points(t)
         w = towards(self.light, x)

@@ -66,7 +66,7 @@ def _bad_basis(u):
 
 def _lambert_ball(u):
     inside = directions(2 * u[:, 0] - 1, u[:, 1]) * np.cbrt(u[:, 2:])
-    x = (*inside, 0, 0, 1)
+    x = inside + np.array([0, 0, 1])
     return x / np.linalg.norm(x, axis=1, keepdims=True)
 
 

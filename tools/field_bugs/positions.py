@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from field_bugs.bug import Bug, directions, hg, ones
-from fogproof import Interval, UnitDisk, UnitSquare
+from fogproof import Ball, Interval, Triangle, UnitDisk, UnitSquare
 
 H, W = 12, 20
 TABLE = np.random.default_rng(5).gamma(2.0, 1.0, (H, W))
@@ -55,6 +55,15 @@ def _triangle(u):
 
 BUGS = [
     Bug(
+        "ball with sqrt for the cube root",
+        "Coollab#84",
+        lambda u: directions(2 * u[:, 0] - 1, u[:, 1]) * np.sqrt(u[:, 2:]),
+        lambda x: np.full(len(x), 0.75 / np.pi),
+        ("missing Jacobian",),
+        Ball(1.0),
+        {"dimensions": 3},
+    ),
+    Bug(
         "disk with r = u",
         "field",
         lambda u: u[:, :1] * directions(0 * u[:, 0], u[:, 1])[:, :2],
@@ -82,6 +91,14 @@ BUGS = [
         UnitSquare(),
     ),
     Bug("nearest table for the lower one", "openmc#1821", _nearest, _lower, ("shifted",), UnitSquare()),
+    Bug(
+        "area missing in the pdf of a mesh",
+        "field",
+        _triangle,
+        ones,
+        ("normalisation", "wrong measure"),
+        Triangle((0, 0), (1, 0), (0, 1)),
+    ),
     Bug(
         "disk's area missing",
         "field",

@@ -96,7 +96,7 @@ class Contrast:
             slope = float(np.sum(w * (1 - w)))
             step = float(np.clip((n - w.sum()) / max(slope, 1e-9), -2, 2))
             log_c += step
-            if abs(step) < 1e-9:
+            if abs(step) < 1e-6:
                 break
         odds = np.exp(log_c) * ratio + _BACKGROUND
         w = odds / (1 + odds)

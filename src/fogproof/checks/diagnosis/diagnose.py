@@ -25,8 +25,9 @@ _SYMPTOMS = {"wrong pdf returned", "wrong weight", "edge of the uniforms"}  # th
 _SIZES = (1 << 14, 1 << 16, 1 << 18)  # samples: as few as show the misfit plainly
 _PLAIN = 1000.0  # chi-square that is plain
 _SCREENED = 1 << 12  # samples on which all hypotheses are tried first, with a few parameters each
-_TRIED = 12  # of them that are fitted there
-_KEPT = 4  # of those that are fitted on all samples
+_TRIED = 12  # of them that are fitted closer, on as many samples as show the misfit
+_TELLING, _MOST = 200.0, 1 << 16  # chi-square of the misfit on those samples, and most of them
+_KEPT = 3  # of those that are fitted on all samples
 _EXPLAINS = 0.5  # of the misfit: a hypothesis that explains less is not told
 
 
@@ -54,10 +55,11 @@ def diagnosed(subject: Subject, findings: Sequence[Finding], samples: int, seed:
     cause = likely_cause(findings)
     statistical = any(f.outcome == "rejected" and f.p_value is not None and f.cause in _STATISTICAL for f in findings)
     if cause in _CONSTANT | _STATISTICAL or (cause in _SYMPTOMS and statistical):
+        integral = next((f for f in findings if f.check == "normalisation" and f.outcome == "rejected"), None)
         try:
             with np.errstate(all="ignore"):
-                if cause in _CONSTANT:
-                    return _constant(subject, findings, cause, samples, seed)
+                if cause in _CONSTANT and integral is not None:
+                    return _constant(subject, integral, cause, samples, seed)
                 best = _explained(subject, samples, seed)
         except (FogproofError, np.linalg.LinAlgError):
             return cause, ""
@@ -104,22 +106,27 @@ def _of_domain(setting: Setting) -> Iterator[Hypothesis]:
 
 def _best(setting: Setting, base: Fit, hypotheses: list[Hypothesis]) -> Explained | None:
     """Return the hypothesis of the greatest likelihood, parameters paid for by Schwarz's criterion; earlier ones win ties."""
+    n = len(setting.contrast.x)
     small = replace(setting, contrast=setting.contrast.part(_SCREENED))
+    middle = replace(setting, contrast=setting.contrast.part(min(max(int(_TELLING * n / base.left), _SCREENED), _MOST)))
     tried = []
     for order, hypothesis in enumerate(hypotheses):
         values = hypothesis.trials or (0.0,)
         scores = [_likelihood(small, hypothesis, value) for value in values]
         at = int(np.argmax(scores))
-        tried.append(
-            (scores[at], -order, hypothesis, values[at], values[max(at - 1, 0)], values[min(at + 1, len(values) - 1)])
-        )
+        score, value, low, high = scores[at], values[at], values[max(at - 1, 0)], values[min(at + 1, len(values) - 1)]
+        if hypothesis.trials:
+            value, score = max((value, score), _fitted(small, hypothesis, low, high, 8), key=lambda one: one[1])
+        tried.append((score, -order, hypothesis, value, 0.5 * (high - low)))
     tried.sort(key=lambda one: one[:2], reverse=True)
     closer = []
-    for score, order, hypothesis, value, low, high in tried[:_TRIED]:
+    for score, order, hypothesis, value, room in tried[:_TRIED]:
         if hypothesis.trials:
-            value, score = _fitted(small, hypothesis, low, high, 12)
-            score -= 0.5 * math.log(len(small.contrast.x))
-        closer.append((score, order, hypothesis, value, 0.3 * (high - low)))
+            value, score = _fitted(middle, hypothesis, value - room, value + room, 12)
+            score -= 0.5 * math.log(len(middle.contrast.x))
+        else:
+            score = _likelihood(middle, hypothesis, value)
+        closer.append((score, order, hypothesis, value, 0.3 * room))
     closer.sort(key=lambda one: one[:2], reverse=True)
     found = []
     for _, order, hypothesis, value, room in closer[:_KEPT]:
@@ -129,7 +136,7 @@ def _best(setting: Setting, base: Fit, hypotheses: list[Hypothesis]) -> Explaine
             error = _error(setting, hypothesis, value, room)
         fit = setting.contrast.fit(hypothesis.density(setting, value)(setting.contrast.points))
         share = 1 - max(fit.left - 2 * math.sqrt(2 * fit.freedom), 0.0) / base.left
-        score = fit.likelihood - (0.5 * math.log(len(setting.contrast.x)) if hypothesis.trials else 0.0)
+        score = fit.likelihood - (0.5 * math.log(n) if hypothesis.trials else 0.0)
         found.append((score + 1.5 * order / len(hypotheses), order, Explained(hypothesis, value, error, fit, share)))
     return max(found, key=lambda one: one[:2])[2] if found else None
 
@@ -179,11 +186,10 @@ def _sharpened(setting: Setting, found: Explained) -> Explained:
     return replace(found, value=value, error=error)
 
 
-def _constant(subject: Subject, findings: Sequence[Finding], cause: str, samples: int, seed: int) -> tuple[str, str]:
+def _constant(subject: Subject, integral: Finding, cause: str, samples: int, seed: int) -> tuple[str, str]:
     """Return what a wrong integral of the pdf comes from: a constant that can be named, or a pdf where nothing is sampled."""
     setting = _setting(subject, min(_SIZES[0], samples), seed)
-    integral = next((f for f in findings if f.check == "normalisation" and f.outcome == "rejected"), None)
-    if setting is None or integral is None or integral.effect is None:
+    if setting is None or integral.effect is None:
         return cause, ""
     base = setting.contrast.fit(setting.p(setting.contrast.points))
     if base.left > 4 * math.sqrt(2 * base.freedom):

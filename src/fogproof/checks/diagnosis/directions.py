@@ -12,6 +12,7 @@ from fogproof.checks.diagnosis.contrast import Density
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting, known_number, of_points
 
 _MIRROR = np.array([1.0, 1.0, -1.0])
+_ALONG = 0.03  # from a coordinate axis: such a lobe is meant to be about it
 _LEAN = 0.03  # mean length of directions that have a direction
 
 
@@ -126,6 +127,7 @@ def _lobes(setting: Setting) -> Iterator[Hypothesis]:
     mean = setting.claimed_mean()
     length = float(np.linalg.norm(mean))
     axis = mean / length if length > _LEAN else np.array([0.0, 0.0, 1.0])
+    axis = np.rint(axis) if np.linalg.norm(axis - np.rint(axis)) < _ALONG else axis
     own = f"; the pdf's mean cosine is {length:.4g}" if length > _LEAN else ""
 
     def about(f: Callable[[np.ndarray, float], np.ndarray]) -> Callable[[Setting, float], Density]:
