@@ -61,8 +61,8 @@ def test_a_band_is_skipped_only_if_its_absence_explains_the_misfit():
     ones = lambda x: np.ones(len(x))  # noqa: E731
     skipped = check_sampler(band, ones, Interval(0, 1), dimensions=2, samples=N)
     assert skipped.cause == "skipped band", str(skipped)
-    assert "0.39" in skipped.diagnosis
-    assert "0.41" in skipped.diagnosis
+    ends = [float(word) for word in skipped.diagnosis.replace(";", " ").split() if word[:2] == "0."]
+    assert np.allclose(ends, [0.39, 0.41], atol=1e-3), skipped.diagnosis
     notched = check_sampler(lambda u: u, lambda x: 4 * x[:, 0] * x[:, 1], UnitSquare(), dimensions=2, samples=N)
     assert notched.cause == "uniform law", "the least likely cells lack most samples, but no band explains it"
 
