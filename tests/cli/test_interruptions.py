@@ -90,6 +90,7 @@ def test_no_worker_outlives_a_killed_study(tmp_path):
     assert process.stdout is not None
     process.stdout.read()
     assert time.monotonic() - started < 30
+    process.stdout.close()
     process.wait()
 
 
