@@ -18,7 +18,7 @@ from fogproof.analytic.multiple.doubling import SIDE, Medium, layer
 from fogproof.analytic.multiple.scattering_kernel import Scaled, associated_legendre, scaled
 from fogproof.analytic.multiple.slab_by_doubling import LEVELS, MOMENTS, phase_moments
 from fogproof.analytic.multiple.slab_modes import quadrature
-from fogproof.analytic.phase.functions import phase_density
+from fogproof.analytic.phase.functions import phase_values
 from fogproof.scene.phase import PhaseFunction
 
 Side = Literal["reflected", "transmitted"]
@@ -79,7 +79,11 @@ def _once(c: float, beams: Beams, phase: PhaseFunction, side: Side) -> tuple[np.
     x, y = near + s * s0 * np.sin(azimuth / 2) ** 2, far + s * s0 * np.cos(azimuth / 2) ** 2
     if side == "reflected":
         x, y = far + s * s0 * np.sin(azimuth / 2) ** 2, near + s * s0 * np.cos(azimuth / 2) ** 2
-    density, error = phase_density(phase, x, y)
+    cosine = y - x
+    density, error = phase_values(phase, cosine, x, y)
+    # What the cosine is rounded by: the change of f_p over 4 eps on either side.
+    around = [phase_values(phase, np.clip(cosine + d, -1, 1), x, y)[0] for d in (-4 * EPS, 4 * EPS)]
+    error = error + np.abs(around[1] - density) + np.abs(around[0] - density)
     return c * density, c * (error + 32 * EPS * density)
 
 
