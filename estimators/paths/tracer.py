@@ -18,6 +18,7 @@ from fogproof.estimators.free_paths.fog import everywhere
 from fogproof.estimators.kernels.data import ChromaticFieldData, FieldData
 from fogproof.estimators.kernels.path_data import Plan
 from fogproof.estimators.paths import data as path_data
+from fogproof.estimators.phase.functions import kernel_lobe
 from fogproof.estimators.tracking.majorant_grid import MajorantGrid
 from fogproof.estimators.tracking.tracked import refuse, single
 from fogproof.scene import AnyMedium, Ray
@@ -130,7 +131,7 @@ class PathTracer:
             self.events,
         )
         medium, bound = path_data.medium_and_bound(self.medium, self.shape, self.majorant)
-        lobe, lamp, wall = path_data.lobe(self.medium.phase), path_data.lamp(self.light), path_data.wall(self.surface)
+        lobe, lamp, wall = kernel_lobe(self.medium.phase), path_data.lamp(self.light), path_data.wall(self.surface)
         return medium, bound, path_data.region(self.shape), lobe, lamp, wall, plan
 
     def paths(self, rng: np.random.Generator, n: int) -> Paths:
