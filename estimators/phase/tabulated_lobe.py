@@ -79,7 +79,9 @@ def tabulated_lobe(phase: PhaseFunction) -> Tabled:
     if not abs(found - 1) <= UNFOUND:
         raise UnsupportedError(f"a table of the phase function {shorten(phase)} has {found:.9g} of it", "phase")
     if not total <= TOO_MUCH:
-        raise UnsupportedError(f"{len(cells.off)} cells leave {total:.2g} of the phase function {shorten(phase)}", "phase")
+        raise UnsupportedError(
+            f"{len(cells.off)} cells leave {total:.2g} of the phase function {shorten(phase)}", "phase"
+        )
     cdf = np.concatenate([[0.0], np.cumsum(cells.mass)]) / found
     cdf[-1] = 1.0
     edges = np.append(cells.v0, 2.0), np.append(cells.c0, 0.0)
