@@ -21,8 +21,9 @@ from fogproof.analytic.arithmetic.error_free import EPS, TINY, two_sum
 from fogproof.analytic.arithmetic.panel_rule import NODES, RUNNING, WEIGHTS
 from fogproof.analytic.geometry.rays import Thickness
 from fogproof.analytic.media.breakpoints import breakpoints
-from fogproof.analytic.media.coefficients import Coefficients, coefficients
-from fogproof.scene import AnyMedium, Procedural, Ray
+from fogproof.analytic.media.coefficients import ROOM, Coefficients, coefficients
+from fogproof.scene import AnyMedium, Ray
+from fogproof.scene.kinds import given
 
 TOLERANCE = 1e-13
 """Relative error aimed at; rounding may end above it, and says so."""
@@ -32,7 +33,7 @@ PANELS = 4096
 """Most panels of one ray; what is left undone by then stands in the error."""
 
 FIRST = 8
-"""Panels that an interval without known breaks starts with."""
+"""Panels that an interval starts with if nobody has a closed form of what is in it."""
 
 THICK, UNSEEN = 8.0, 1e-30
 """A panel thicker than this is halved, as long as more than that of its light arrives."""
@@ -77,32 +78,38 @@ class Panels(NamedTuple):
     ends: np.ndarray
 
 
-def procedural_thickness(medium: Procedural, ray: Ray) -> Thickness:
-    """Return tau of a user's medium, shape R or R + (channels,).
+def thickness_by_quadrature(medium: AnyMedium, ray: Ray, channels: int | None) -> Thickness:
+    """Return tau of a medium of which only the local coefficients are known, shape R or R + (channels,).
 
-    Error: estimated from panels against their halves, plus rounding. A detail smaller than `medium.detail` that no
-    node meets cannot be seen.
+    Error: estimated from panels against their halves, plus rounding. A detail smaller than what the medium declares that
+    no node meets cannot be seen.
     """
-    along = integrate_along(medium, ray, lambda local: np.zeros_like(local.sigma_t))
-    shape = ray.shape if medium.channels is None else (*ray.shape, medium.channels)
+    along = integrate_along(medium, ray, lambda local: np.zeros_like(local.sigma_t), channels)
+    shape = ray.shape if channels is None else (*ray.shape, channels)
     value, error = along.tau.reshape(shape), along.tau_error.reshape(shape)
     return Thickness(value, np.zeros(shape), error, "adaptive Gauss-Legendre 16", SOURCE)
 
 
 def integrate_along(
-    medium: AnyMedium, ray: Ray, source: SourceTerm, channels: int | None = None, tolerance: float = TOLERANCE
+    medium: AnyMedium,
+    ray: Ray,
+    source: SourceTerm,
+    channels: int | None = None,
+    tolerance: float = TOLERANCE,
+    extinction: SourceTerm = lambda local: local.sigma_t,
 ) -> Along:
     """Return the optical thickness and the gain along the flattened rays, with estimated errors.
 
-    source    the radiance gained per metre, from the local coefficients
-    channels  how many channels the result has, the medium's own unless given
+    source      the radiance gained per metre, from the local coefficients
+    channels    how many channels the result has, the medium's own unless given
+    extinction  what is integrated to the optical thickness [1/m]
     """
     origin, direction = ray.origin.reshape(-1, 3), ray.direction.reshape(-1, 3)
 
     def look(which: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         w = direction[which, None, :]
         local = coefficients(medium, origin[which, None, :] + t[..., None] * w, w, channels)
-        return local.sigma_t, np.broadcast_to(source(local), local.sigma_t.shape)
+        return extinction(local), np.broadcast_to(source(local), local.sigma_t.shape)
 
     def evaluate(which: np.ndarray, start: np.ndarray, width: np.ndarray) -> Panels:
         blocks = [slice(i, i + BLOCK) for i in range(0, max(len(which), 1), BLOCK)]
@@ -135,7 +142,8 @@ def _first(medium: AnyMedium, ray: Ray) -> tuple[np.ndarray, np.ndarray, np.ndar
     widths = np.diff(edges, axis=-1)
     which, column = np.nonzero(widths > 0)
     start, width = edges[which, column], widths[which, column]
-    detail, pieces = getattr(medium, "detail", np.inf), FIRST if isinstance(medium, Procedural) else 1
+    detail = getattr(medium, "detail", np.inf)
+    pieces = 1 if given(medium, ROOM, "thickness") else FIRST
     parts = np.maximum(pieces, np.ceil(width / detail)).astype(int)
     owner = np.repeat(np.arange(len(parts)), parts)
     step = np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts)

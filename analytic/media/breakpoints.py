@@ -2,10 +2,35 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from fogproof.errors import UnsupportedError
-from fogproof.scene import AnyMedium, LinearMedium, OpenGLFog, PiecewiseConstantMedium, Procedural, Ray, VoxelGrid
+from fogproof.scene import AnyMedium, Ray
+from fogproof.scene.kinds import given
+from fogproof.scene.media import box
+
+ROOM = "fogproof.analytic.media"
+
+
+class Breaks(NamedTuple):
+    """Where n rays enter and leave what the medium fills, (n,) each, and breaks anywhere on their lines, (n, any) each [m]."""
+
+    enter: np.ndarray
+    leave: np.ndarray
+    found: list[np.ndarray]
+
+
+def extent(medium: AnyMedium, ray: Ray) -> Breaks:
+    """Return where the flattened rays enter and leave the medium, with leave = inf where it has no end, and breaks."""
+    origin, direction, length = ray.origin.reshape(-1, 3), ray.direction.reshape(-1, 3), ray.length.reshape(-1)
+    own = given(medium, ROOM, "breakpoints")
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        if own is not None:
+            found: Breaks = own(medium, origin, direction, length)
+            return found
+        return Breaks(*between(origin, direction, *box(medium), length), [])
 
 
 def breakpoints(medium: AnyMedium, ray: Ray) -> np.ndarray:
@@ -14,33 +39,17 @@ def breakpoints(medium: AnyMedium, ray: Ray) -> np.ndarray:
     There is vacuum before the first and after the last. A missed break would cost quadrature time, not truth: its
     error estimate sees the jump. An infinite ray through a medium without end is refused.
     """
-    origin, direction, length = ray.origin.reshape(-1, 3), ray.direction.reshape(-1, 3), ray.length.reshape(-1)
-    enter, leave, found = np.zeros_like(length), length, [np.empty((len(length), 0))]
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        match medium:
-            case LinearMedium():
-                gradient = np.atleast_2d(medium.gradient)
-                zero = -(np.atleast_1d(medium.sigma_0) + origin @ gradient.T) / (direction @ gradient.T)
-                found.append(np.where(np.isnan(zero), 0.0, zero))
-            case OpenGLFog():
-                found.append(np.broadcast_to([medium.start, medium.end], (len(length), 2)))
-                leave = np.minimum(length, medium.end) if medium.mode == "linear" else length
-            case PiecewiseConstantMedium():
-                height, rise = (origin @ medium.axis)[:, None], (direction @ medium.axis)[:, None]
-                found.append((medium.boundaries - height) / rise)
-                enter, leave = _slab(height, rise, medium.boundaries[:1], medium.boundaries[-1:], length)
-            case VoxelGrid() | Procedural():
-                enter, leave = _slab(origin, direction, medium.lower, medium.upper, length)
-                found += _planes(medium, origin, direction) if isinstance(medium, VoxelGrid) else []
+    enter, leave, found = extent(medium, ray)
     if np.isinf(leave).any():
         name = type(medium).__name__
         raise UnsupportedError(f"an infinite ray through a {name} without end: give the ray a length", "ray")
-    breaks = np.concatenate([np.nan_to_num(b, nan=0.0, posinf=np.inf, neginf=-np.inf) for b in found], axis=-1)
+    clean = [np.nan_to_num(b, nan=0.0, posinf=np.inf, neginf=-np.inf) for b in found]
+    breaks = np.concatenate([np.empty((len(enter), 0)), *clean], axis=-1)
     breaks = np.clip(breaks, enter[:, None], leave[:, None])
     return np.sort(np.concatenate([enter[:, None], breaks, leave[:, None]], axis=-1), axis=-1)
 
 
-def _slab(
+def between(
     origin: np.ndarray, direction: np.ndarray, lower: np.ndarray, upper: np.ndarray, length: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return where rays enter and leave lower <= origin + t direction <= upper within [0, length], equal if never."""
@@ -52,13 +61,3 @@ def _slab(
     enter, leave = np.maximum(near.max(axis=-1), 0.0), np.minimum(far.min(axis=-1), length)
     missed = ~(enter < leave)
     return np.where(missed, 0.0, enter), np.where(missed, 0.0, leave)
-
-
-def _planes(grid: VoxelGrid, origin: np.ndarray, direction: np.ndarray) -> list[np.ndarray]:
-    """Return where rays meet the planes between voxels, or through their centres if the grid is trilinear."""
-    found = []
-    for i, n in enumerate(grid.sigma_t.shape[:3]):
-        between = np.arange(n) + 0.5 if grid.interpolation == "trilinear" else np.arange(1.0, n)
-        planes = grid.lower[i] + between * ((grid.upper[i] - grid.lower[i]) / n)
-        found.append((planes - origin[:, i, None]) / direction[:, i, None])
-    return found

@@ -13,47 +13,34 @@ import numpy as np
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.analytic.declaration import quantity
 from fogproof.contracts import Reference
-from fogproof.errors import InvalidValueError
-from fogproof.scene import (
-    AnisotropicMedium,
-    AnyMedium,
-    ExponentialMedium,
-    LinearMedium,
-    Medium,
-    OpenGLFog,
-    PiecewiseConstantMedium,
-    Procedural,
-    VoxelGrid,
-)
+from fogproof.errors import InvalidValueError, UnsupportedError
+from fogproof.scene import AnyMedium
 from fogproof.scene.arrays import PointArray
+from fogproof.scene.kinds import given
 from fogproof.scene.media import AnyMediumField
-from fogproof.validate import as_float_array, points, require, unit_vectors
+from fogproof.validate import points, unit_vectors
 
-Corners = list[tuple[tuple[np.ndarray, ...], np.ndarray]]
-"""What a value in a grid is made of: (index arrays of a cell, its weight at each point)."""
+ROOM = "fogproof.analytic.media"
 
 
 class Coefficients(NamedTuple):
     """Coefficients at points of shape X, each X or X + (channels,).
 
     sigma_t   extinction coefficient [1/m]
-    albedo    sigma_s / sigma_t
+    sigma_a   absorption coefficient [1/m], as the medium has it and not as what scattering leaves of sigma_t
+    sigma_s   scattering coefficient [1/m]
     emission  L_e [W/(m^2 sr)]
     """
 
     sigma_t: np.ndarray
-    albedo: np.ndarray
+    sigma_a: np.ndarray
+    sigma_s: np.ndarray
     emission: np.ndarray
 
     @property
-    def sigma_s(self) -> np.ndarray:
-        """Scattering coefficient [1/m]."""
-        return self.albedo * self.sigma_t
-
-    @property
-    def sigma_a(self) -> np.ndarray:
-        """Absorption coefficient [1/m]."""
-        return (1 - self.albedo) * self.sigma_t
+    def albedo(self) -> np.ndarray:
+        """sigma_s / sigma_t, 0 in vacuum."""
+        return np.divide(self.sigma_s, self.sigma_t, out=np.zeros_like(self.sigma_t), where=self.sigma_t > 0)
 
     @property
     def mean_free_path(self) -> np.ndarray:
@@ -61,8 +48,22 @@ class Coefficients(NamedTuple):
         return np.divide(1.0, self.sigma_t, out=np.full_like(self.sigma_t, np.inf), where=self.sigma_t > 0)
 
 
+class Points(NamedTuple):
+    """Where coefficients are wanted, as the modules of the kinds get it.
+
+    x, w   points and directions, X + (3,) each
+    place  x with an axis for the channels, unless the result is grey
+    shape  of the result, X or X + (channels,)
+    """
+
+    x: np.ndarray
+    w: np.ndarray
+    place: np.ndarray
+    shape: tuple[int, ...]
+
+
 def _as_reference(medium: AnyMedium, x: Any, w: Any, channels: int | None = None) -> Reference:
-    """Return sigma_t, albedo and emission in a last axis of three.
+    """Return sigma_t, sigma_a, sigma_s and emission in a last axis of four.
 
     Error: estimated, by how much they change where x moves by 8 EPS; beside a boundary that is the step across it.
     """
@@ -81,8 +82,8 @@ def _as_reference(medium: AnyMedium, x: Any, w: Any, channels: int | None = None
 
 
 @quantity(
-    unit="1/m, 1, W/(m^2 sr)",
-    convention="sigma_t, albedo and emission L_e at the point x for light along w, in the last axis",
+    unit="1/m, 1/m, 1/m, W/(m^2 sr)",
+    convention="sigma_t, sigma_a, sigma_s and emission L_e at the point x for light along w, in the last axis",
     source="the definition of the medium",
     example={
         "medium": {"kind": "exponential", "sigma_0": 0.3, "rate": [0, 0, -0.5], "albedo": 0.9, "emission": 2},
@@ -104,108 +105,27 @@ def coefficients(medium: AnyMediumField, x: PointArray, w: PointArray, channels:
     """
     if not isinstance(medium, AnyMedium):
         raise InvalidValueError("medium", "must be a medium", medium, "for example Medium(sigma_a, sigma_s)")
+    own = given(medium, ROOM, "coefficients")
+    if own is None:
+        raise UnsupportedError(f"the oracle does not know the coefficients of a {type(medium).__name__}", "medium")
     x, w = np.broadcast_arrays(np.asarray(x, float), np.asarray(w, float))
     channels = medium.channels if channels is None else channels
     place = x if channels is None else x[..., None, :]
     shape = x.shape[:-1] if channels is None else (*x.shape[:-1], channels)
-    albedo: Any = medium.albedo
-    emission: Any = medium.emission
-    match medium:
-        case Medium():
-            sigma_t = medium.sigma_t
-        case LinearMedium():
-            sigma_t = np.maximum(0.0, medium.sigma_0 + np.sum(medium.gradient * place, axis=-1))
-            emission = np.where(sigma_t > 0, emission, 0.0)
-        case ExponentialMedium():
-            sigma_t = medium.sigma_0 * np.exp(np.sum(medium.rate * place, axis=-1))
-        case AnisotropicMedium():
-            area = np.sqrt(np.maximum(0.0, np.einsum("...i,ij,...j", w, medium.S, w)))
-            sigma_t = np.multiply(medium.sigma, area if channels is None else area[..., None])
-        case OpenGLFog():
-            t = np.sqrt(np.sum((place - medium.eye) ** 2, axis=-1))
-            sigma_t = _fog(medium, t)
-        case PiecewiseConstantMedium():
-            cell, last = np.searchsorted(medium.boundaries, x @ medium.axis, side="right") - 1, len(medium.sigma_t) - 1
-            corners: Corners = [((np.clip(cell, 0, last),), ((cell >= 0) & (cell <= last)).astype(float))]
-            sigma_t, albedo, emission = (_gather(a, corners, shape) for a in (medium.sigma_t, albedo, emission))
-        case VoxelGrid():
-            corners = _corners(medium, x)
-            sigma_t, albedo, emission = (_gather(a, corners, shape) for a in (medium.sigma_t, albedo, emission))
-            albedo = np.minimum(albedo, medium.albedo.max())
-        case Procedural():
-            return _procedural(medium, x, w, shape)
-    return Coefficients(*(np.broadcast_to(np.asarray(v, float), shape) for v in (sigma_t, albedo, emission)))
+    found = own(medium, Points(x, w, place, shape))
+    return Coefficients(*(np.broadcast_to(np.asarray(v, float), shape) for v in found))
 
 
-def _fog(medium: OpenGLFog, t: np.ndarray) -> np.ndarray:
-    if medium.mode == "exp":
-        return np.full_like(t, medium.density)
-    if medium.mode == "exp2":
-        return 2 * medium.density**2 * t
-    with np.errstate(divide="ignore"):
-        return np.where(t < medium.start, 0.0, np.where(t < medium.end, 1 / (medium.end - t), np.inf))
+def by_albedo(sigma_t: Any, albedo: Any, emission: Any) -> Coefficients:
+    """Return the coefficients of a medium given by sigma_t and an albedo, which is exact: 1 - albedo loses nothing."""
+    sigma_t = np.asarray(sigma_t, float)
+    return Coefficients(sigma_t, np.subtract(1.0, albedo) * sigma_t, np.multiply(albedo, sigma_t), emission)
 
 
-def _corners(grid: VoxelGrid, x: np.ndarray) -> Corners:
-    """Return (index arrays, weights) of the voxels that make up the value at each point; no weight outside."""
-    n = np.array(grid.sigma_t.shape[:3])
-    c = (x - grid.lower) * (n / (grid.upper - grid.lower))
-    inside = ((x >= grid.lower) & (x < grid.upper)).all(axis=-1)
-    if grid.interpolation == "nearest":
-        cell = np.clip(np.floor(c), 0, n - 1).astype(int)
-        return [(tuple(np.moveaxis(cell, -1, 0)), inside.astype(float))]
-    low = np.floor(np.clip(c, 0, n) - 0.5)
-    u = np.clip(c - 0.5 - low, 0, 1)
-    found: Corners = []
-    for corner in product((0, 1), repeat=3):
-        cell = np.clip(low + corner, 0, n - 1).astype(int)
-        weight = np.prod(np.where(corner, u, 1 - u), axis=-1)
-        found.append((tuple(np.moveaxis(cell, -1, 0)), inside * weight))
-    return found
-
-
-def _gather(array: np.ndarray, corners: Corners, shape: tuple[int, ...]) -> np.ndarray:
-    """Return the weighted sum of an array's cells at the points, channels last; a constant counts inside only."""
-    total = np.zeros(shape)
-    for cells, weight in corners:
-        found = array[cells] if array.ndim else np.broadcast_to(array, weight.shape)
-        if weight.ndim < len(shape):
-            weight = weight[..., None]
-            found = found if found.ndim == len(shape) else found[..., None]
-        total = total + found * weight
-    return total
-
-
-def _procedural(medium: Procedural, x: np.ndarray, w: np.ndarray, shape: tuple[int, ...]) -> Coefficients:
-    inside = ((x >= medium.lower) & (x <= medium.upper)).all(axis=-1)
-    sigma_t = medium.sigma_t(x, w) if medium.directional else medium.sigma_t(x)
-    own = x.shape[:-1] if medium.channels is None else (*x.shape[:-1], medium.channels)
-    rule = f"must return numbers in [0, majorant = {medium.majorant:g}]"
-    sigma_t = _checked("sigma_t", sigma_t, own, medium.majorant * (1 + 1e-12), rule, inside)
-    albedo: Any = medium.albedo
-    emission: Any = medium.emission
-    if callable(albedo):
-        albedo = _checked("albedo", albedo(x), own, 1.0, "must return numbers in [0, 1]", inside)
-    if callable(emission):
-        emission = _checked("emission", emission(x), own, np.inf, "must return numbers >= 0", inside)
-    found = []
-    for value in (sigma_t, albedo, emission):
-        array = np.asarray(value, float)
-        if len(shape) > len(own) and array.ndim == len(own):
-            array = array[..., None]
-        found.append(np.where(inside if len(shape) == inside.ndim else inside[..., None], array, 0.0))
-    return Coefficients(*(np.broadcast_to(array, shape) for array in found))
-
-
-def _checked(
-    name: str, value: Any, shape: tuple[int, ...], high: float, rule: str, inside: np.ndarray | None = None
-) -> np.ndarray:
-    """Return what a user's function gave at points that are inside, or say what is wrong with it."""
-    array = as_float_array(name, value)
-    if array.shape != shape:
-        raise InvalidValueError(name, f"must return an array of shape {list(shape)}", list(array.shape))
-    good = np.isfinite(array) & (array >= 0) & (array <= high)
-    if inside is not None:
-        good |= ~inside if len(shape) == inside.ndim else ~inside[..., None]
-    require(name, array, good, rule)
-    return array
+def shares(medium: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Return sigma_s / sigma_t and sigma_a / sigma_t of a medium in which they are the same everywhere, 0 in an empty one."""
+    own = given(medium, ROOM, "shares")
+    if own is not None:
+        found: tuple[np.ndarray, np.ndarray] = own(medium)
+        return found
+    return np.asarray(medium.albedo, float), np.subtract(1.0, medium.albedo)

@@ -1,28 +1,40 @@
-"""Optical thickness of exponentially graded extinction, and the distance at which a given thickness is reached.
+"""Exponentially graded extinction.
 
 Along a ray sigma_t(t) = sigma_0 e^{e + k t} with e = rate . origin and k = rate . direction.
 """
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from fogproof.analytic.arithmetic import double_double as dd
 from fogproof.analytic.arithmetic.double_double import Pair
 from fogproof.analytic.arithmetic.error_free import ELEMENTARY, EPS, TINY
-from fogproof.analytic.geometry.rays import Rays, Thickness
-from fogproof.scene import ExponentialMedium
+from fogproof.analytic.geometry.rays import Rays, Thickness, rays_with_channels
+from fogproof.analytic.media.coefficients import Coefficients, Points, by_albedo
+from fogproof.analytic.proven.balls import flint, rational, vector
+from fogproof.analytic.proven.pieces import Piece, constant, dot
+from fogproof.scene import ExponentialMedium, Ray
 
 METHOD = "integral of an exponential"
 SOURCE = "elementary: tau = sigma_max s phi1(|k| s), phi1(x) = (1 - e^-x)/x, sigma_max at the denser end"
 
 
-def exponential_thickness(medium: ExponentialMedium, rays: Rays) -> Thickness:
+def coefficients(medium: ExponentialMedium, at: Points) -> Coefficients:
+    """Return sigma_0 exp(rate . x) and what belongs to it."""
+    sigma_t = medium.sigma_0 * np.exp(np.sum(medium.rate * at.place, axis=-1))
+    return by_albedo(sigma_t, medium.albedo, medium.emission)
+
+
+def thickness(medium: ExponentialMedium, ray: Ray, channels: int | None) -> Thickness:
     """Return tau along rays; on an infinite ray sigma/|k| where the extinction falls, else inf.
 
     The denser end is the reference, so that no factor overflows before the result does.
     Error: 14 EPS relative, plus 2^-100 of the terms of the exponent.
     """
+    rays = rays_with_channels(ray, channels)
     e, k, e_error, k_error = _exponent(medium, rays)
     s = np.broadcast_to(rays.length, e[0].shape)
     finite = np.where(np.isfinite(s), s, 0.0)
@@ -45,7 +57,7 @@ def exponential_thickness(medium: ExponentialMedium, rays: Rays) -> Thickness:
     return Thickness(value, np.zeros_like(value), np.where(unsure, np.inf, error), METHOD, SOURCE)
 
 
-def exponential_free_path(medium: ExponentialMedium, rays: Rays, tau: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def free_path(medium: ExponentialMedium, rays: Rays, tau: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the distance at which the thickness reaches tau, inf if it never does, and its error bound.
 
         t = (tau/sigma) Lg(k tau/sigma), Lg(x) = log1p(x)/x, sigma = sigma_0 e^e; x <= -1 escapes
@@ -81,3 +93,30 @@ def _exponent(medium: ExponentialMedium, rays: Rays) -> tuple[Pair, Pair, np.nda
     shape = np.broadcast_shapes(e[0].shape, k[0].shape, np.shape(medium.sigma_0), rays.length.shape)
     e, k = (dd.each(lambda x: np.broadcast_to(x, shape), part) for part in (e, k))
     return e, k, dd.dot_error(medium.rate, rays.origin), dd.dot_error(medium.rate, rays.direction)
+
+
+def squared(medium: ExponentialMedium) -> ExponentialMedium:
+    """Return the medium with the extinction sigma_t^2."""
+    sigma = np.asarray(medium.sigma_0) ** 2
+    return ExponentialMedium(float(sigma) if sigma.ndim == 0 else tuple(sigma.tolist()), 2 * medium.rate)
+
+
+def pieces(medium: ExponentialMedium, origin: np.ndarray, direction: np.ndarray, length: Any) -> list[Piece]:
+    """Return the one piece of the ray."""
+    rate, w = vector(medium.rate), vector(direction)
+    source = rational(medium.albedo), rational(medium.emission)
+    return _rising(rational(medium.sigma_0), dot(rate, vector(origin)), dot(rate, w), length, source)
+
+
+def _rising(sigma_0: Any, e: Any, k: Any, s: Any, source: tuple[Any, Any]) -> list[Piece]:
+    arb = flint().arb
+    sigma = arb(e).exp() * sigma_0 if sigma_0 else flint().fmpq(0)
+    if not sigma_0 or k == 0:
+        return [constant(sigma, s, *source)]
+    if s is not None:
+        tau = sigma * (arb(k * s).expm1() / k)
+    elif k < 0:
+        tau = sigma / -k
+    else:
+        tau = arb.pos_inf()
+    return [Piece(s, tau, *source, survived=lambda z: (-(sigma * ((z * k).exp() - 1) / k)).exp())]

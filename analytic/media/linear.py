@@ -1,4 +1,4 @@
-"""Optical thickness of linearly graded extinction, and the distance at which a given thickness is reached.
+"""Linearly graded extinction.
 
 Along a ray sigma_t(t) = max(0, a + b t) with a = sigma_0 + gradient . origin and b = gradient . direction. Both are dot
 products that cancel easily; as pairs they do not lose anything.
@@ -6,23 +6,44 @@ products that cancel easily; as pairs they do not lose anything.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from fogproof.analytic.arithmetic import double_double as dd
 from fogproof.analytic.arithmetic.double_double import UNIT, Pair
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
-from fogproof.analytic.geometry.rays import Rays, Thickness
-from fogproof.scene import LinearMedium
+from fogproof.analytic.geometry.rays import Rays, Thickness, rays_with_channels
+from fogproof.analytic.media.breakpoints import Breaks
+from fogproof.analytic.media.coefficients import Coefficients, Points, by_albedo
+from fogproof.analytic.media.squared_extinction import Integral, by_panels
+from fogproof.analytic.proven.balls import flint, rational, vector
+from fogproof.analytic.proven.pieces import Piece, constant, dot
+from fogproof.scene import LinearMedium, Ray
 
 METHOD = "area under a clamped line"
 SOURCE = "elementary: tau = s (sigma(0) + sigma(s))/2, or a triangle where the medium ends"
 
 
-def linear_thickness(medium: LinearMedium, rays: Rays) -> Thickness:
+def coefficients(medium: LinearMedium, at: Points) -> Coefficients:
+    """Return max(0, sigma_0 + gradient . x) and what belongs to it; vacuum does not glow."""
+    sigma_t = np.maximum(0.0, medium.sigma_0 + np.sum(medium.gradient * at.place, axis=-1))
+    return by_albedo(sigma_t, medium.albedo, np.where(sigma_t > 0, medium.emission, 0.0))
+
+
+def breakpoints(medium: LinearMedium, origin: np.ndarray, direction: np.ndarray, length: np.ndarray) -> Breaks:
+    """Return where the line crosses 0."""
+    gradient = np.atleast_2d(medium.gradient)
+    zero = -(np.atleast_1d(medium.sigma_0) + origin @ gradient.T) / (direction @ gradient.T)
+    return Breaks(np.zeros_like(length), length, [np.where(np.isnan(zero), 0.0, zero)])
+
+
+def thickness(medium: LinearMedium, ray: Ray, channels: int | None) -> Thickness:
     """Return tau along rays; on an infinite ray inf, or the finite area up to where the medium ends.
 
     Error: about 2^-98 (1 + condition of the two dot products) relative.
     """
+    rays = rays_with_channels(ray, channels)
     a, b, a_error, b_error = _line(medium, rays)
     s = np.broadcast_to(rays.length, a[0].shape)
     finite = np.where(np.isfinite(s), s, 0.0)
@@ -48,7 +69,7 @@ def linear_thickness(medium: LinearMedium, rays: Rays) -> Thickness:
     return Thickness(value, low, np.where(unsure, np.inf, np.where(endless, 0.0, error)), METHOD, SOURCE)
 
 
-def linear_free_path(medium: LinearMedium, rays: Rays, tau: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def free_path(medium: LinearMedium, rays: Rays, tau: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the distance at which the thickness reaches tau, inf if it never does, and its error bound.
 
         t = 2 tau / (a + sqrt(a^2 + 2 b tau)), or -a/b + sqrt(2 tau / b) where the medium begins only at -a/b
@@ -94,3 +115,33 @@ def _line(medium: LinearMedium, rays: Rays) -> tuple[Pair, Pair, np.ndarray, np.
     a, b = (dd.each(lambda x: np.broadcast_to(x, shape), line) for line in (a, b))
     a_error = UNIT * np.abs(medium.sigma_0) + dd.dot_error(medium.gradient, rays.origin)
     return a, b, a_error, dd.dot_error(medium.gradient, rays.direction)
+
+
+def squared_extinction(medium: LinearMedium, ray: Ray, channels: int | None) -> Integral:
+    """Return the integral of sigma_t^2, a quadratic between breaks."""
+    return by_panels(medium, ray, channels)
+
+
+def pieces(medium: LinearMedium, origin: np.ndarray, direction: np.ndarray, length: Any) -> list[Piece]:
+    """Return the one piece of the ray where the line is above 0."""
+    gradient, w = vector(medium.gradient), vector(direction)
+    a, b = rational(medium.sigma_0) + dot(gradient, vector(origin)), dot(gradient, w)
+    return _above_zero(a, b, length, (rational(medium.albedo), rational(medium.emission)))
+
+
+def _above_zero(a: Any, b: Any, s: Any, source: tuple[Any, Any]) -> list[Piece]:
+    arb, zero = flint().arb, flint().fmpq(0)
+    start, end = zero, s
+    if b == 0:
+        return [constant(a, s, *source)] if a > 0 else []
+    if b > 0:
+        start = max(start, -a / b)
+    else:
+        end = -a / b if end is None else min(end, -a / b)
+    if end is None:
+        return [Piece(None, arb.pos_inf(), *source, survived=lambda z: (-(a * z + z * z * b / 2)).exp())]
+    if end <= start:
+        return []
+    height, length = a + b * start, end - start
+    tau = height * length + b * length * length / 2
+    return [Piece(length, arb(tau), *source, survived=lambda z: (-(z * height + z * z * b / 2)).exp())]

@@ -1,24 +1,54 @@
-"""Optical thickness of OpenGL's three fogs, whose transmittance is the fog factor."""
+"""OpenGL's three fogs, whose transmittance is the fog factor."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 
 from fogproof.analytic.arithmetic import double_double as dd
 from fogproof.analytic.arithmetic.double_double import UNIT
 from fogproof.analytic.arithmetic.error_free import ELEMENTARY, EPS, TINY
-from fogproof.analytic.geometry.rays import Rays, Thickness
+from fogproof.analytic.geometry.rays import Thickness, rays_with_channels
+from fogproof.analytic.media.breakpoints import Breaks
+from fogproof.analytic.media.coefficients import Coefficients, Points, by_albedo
+from fogproof.analytic.media.squared_extinction import Integral, by_panels
+from fogproof.analytic.proven.balls import flint, rational
+from fogproof.analytic.proven.pieces import Piece, constant
 from fogproof.errors import UnsupportedError
-from fogproof.scene import OpenGLFog
+from fogproof.scene import OpenGLFog, Ray
 
 SOURCE = "Segal & Akeley 2010, The OpenGL Graphics System, version 4.0 compatibility profile, section 3.11"
 
 
-def fog_thickness(medium: OpenGLFog, rays: Rays) -> Thickness:
+def coefficients(medium: OpenGLFog, at: Points) -> Coefficients:
+    """Return the extinction at a distance from the eye and what belongs to it."""
+    return by_albedo(
+        _sigma(medium, np.sqrt(np.sum((at.place - medium.eye) ** 2, axis=-1))), medium.albedo, medium.emission
+    )
+
+
+def _sigma(medium: OpenGLFog, r: np.ndarray) -> np.ndarray:
+    if medium.mode == "exp":
+        return np.full_like(r, medium.density)
+    if medium.mode == "exp2":
+        return 2 * medium.density**2 * r
+    with np.errstate(divide="ignore"):
+        return np.where(r < medium.start, 0.0, np.where(r < medium.end, 1 / (medium.end - r), np.inf))
+
+
+def breakpoints(medium: OpenGLFog, origin: np.ndarray, direction: np.ndarray, length: np.ndarray) -> Breaks:
+    """Return where linear fog begins, and where nothing is left."""
+    found = np.broadcast_to([medium.start, medium.end], (len(length), 2))
+    return Breaks(np.zeros_like(length), np.minimum(length, medium.end) if medium.mode == "linear" else length, [found])
+
+
+def thickness(medium: OpenGLFog, ray: Ray, channels: int | None) -> Thickness:
     """Return tau of a distance s from the eye: density s, (density s)^2, or log((end - start)/(end - s)).
 
     Error: 2^-100 relative for "exp" and "exp2", 8 EPS for "linear".
     """
+    rays = rays_with_channels(ray, channels)
     if not (rays.origin == medium.eye).all():
         raise UnsupportedError(f"OpenGL fog is seen from its eye {medium.eye.tolist()}: start the rays there", "ray")
     if medium.mode == "linear":
@@ -38,3 +68,37 @@ def _linear(start: float, end: float, s: np.ndarray) -> Thickness:
         value = np.log1p((s - start) / (end - s))
     error = np.where(np.isinf(value), 0.0, (ELEMENTARY + 3 * EPS) * value + 2 * TINY)
     return Thickness(value, np.zeros_like(value), error, "fog factor of mode linear", SOURCE)
+
+
+def squared_extinction(medium: OpenGLFog, ray: Ray, channels: int | None) -> Integral:
+    """Return the integral of sigma_t^2; linear fog has 1/(end - s) - 1/(end - start), inf where the ray reaches its end."""
+    if medium.mode != "linear":
+        return by_panels(medium, ray, channels)
+    span = medium.end - medium.start
+    inside = np.clip(rays_with_channels(ray, channels).length - medium.start, 0.0, span)
+    shape = ray.shape if channels is None else (*ray.shape, channels)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        value = np.where(inside > 0, inside / (span * (span - inside)), 0.0)
+        slack = EPS * medium.end * (1 / span + 1 / (span - inside)) + 4 * EPS
+        error = np.where(np.isfinite(value), 3 * slack * value + TINY, 0.0)
+    return Integral(np.broadcast_to(value, shape), np.broadcast_to(error, shape), "closed form")
+
+
+def pieces(fog: OpenGLFog, origin: np.ndarray, direction: np.ndarray, s: Any) -> list[Piece]:
+    """Return vacuum and fog from the eye on."""
+    if not (np.asarray(origin) == fog.eye).all():
+        raise UnsupportedError(f"OpenGL fog is seen from its eye {fog.eye.tolist()}: start the rays there", "ray")
+    source = rational(fog.albedo), rational(fog.emission)
+    arb, density = flint().arb, rational(fog.density)
+    if fog.mode == "exp" or (fog.mode == "exp2" and not density):
+        return [constant(density, s, *source)]
+    if fog.mode == "exp2":
+        tau = arb.pos_inf() if s is None else arb((density * s) ** 2)
+        return [Piece(s, tau, *source, survived=lambda z: (-((density * z) ** 2)).exp())]
+    start, end = rational(fog.start), rational(fog.end)
+    if s is not None and s <= start:
+        return [constant(flint().fmpq(0), s, *source)]
+    reach = end - start if s is None else min(s, end) - start
+    tau = arb.pos_inf() if reach == end - start else -(1 - arb(reach) / (end - start)).log()
+    foggy = Piece(reach, tau, *source, survived=lambda z: 1 - z / (end - start))
+    return [constant(flint().fmpq(0), start, *source), foggy]

@@ -9,10 +9,11 @@ import numpy as np
 
 from fogproof.analytic.geometry.rays import channels_of
 from fogproof.analytic.proven.balls import Ball, flint, proven, rational, reference
-from fogproof.analytic.proven.pieces import Piece, channel, horner, pieces
+from fogproof.analytic.proven.pieces import Piece, horner, pieces
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError, UnsupportedError
 from fogproof.scene import AnyMedium, Ray
+from fogproof.scene.media import medium_of_channel
 from fogproof.validate import nonnegative_channels
 
 SOURCE = "Johansson 2017, Arb; Johansson 2018, Numerical integration in arbitrary-precision ball arithmetic"
@@ -72,7 +73,7 @@ def _over_rays(
     """Enclose `compute(pieces, channel)` for every ray and channel."""
     if not isinstance(ray, Ray):
         raise InvalidValueError("ray", "must be a Ray", ray)
-    media = [medium] if medium.channels is None else [channel(medium, c) for c in range(medium.channels)]
+    media = [medium] if medium.channels is None else [medium_of_channel(medium, c) for c in range(medium.channels)]
     rows = zip(ray.origin.reshape(-1, 3), ray.direction.reshape(-1, 3), ray.length.reshape(-1), strict=True)
 
     def ball(row: tuple[np.ndarray, np.ndarray, float], c: int) -> Ball:

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.analytic.declaration import FOG, RADIANCE, RAY, quantity
 from fogproof.analytic.geometry.rays import channels_of
-from fogproof.analytic.media.cells import is_trilinear
+from fogproof.analytic.media.coefficients import ROOM, shares
+from fogproof.analytic.media.thickness import survival, thickness
 from fogproof.analytic.proven.radiance import proven_radiance
-from fogproof.analytic.rays.compositing import composite
 from fogproof.analytic.rays.radiance_by_quadrature import radiance_by_quadrature
-from fogproof.analytic.rays.transmittance import survival, thickness
 from fogproof.contracts import Reference
-from fogproof.scene import Medium, PiecewiseConstantMedium, Ray, VoxelGrid
+from fogproof.scene import Ray
 from fogproof.scene.arrays import ChannelArray
-from fogproof.scene.media import AnyMediumField
+from fogproof.scene.kinds import given
+from fogproof.scene.media import AnyMediumField, sources_vary
 from fogproof.validate import nonnegative_channels
 
 SOURCE = "Chandrasekhar 1960, Radiative Transfer, section 7, with a constant source function"
@@ -56,15 +54,13 @@ def ambient_fog(
     channels = channels_of(medium, ambient=ambient, background=background)
     if rigorous:
         return proven_radiance(medium, ray, ambient, background).reference()
-    if callable(medium.albedo) or callable(medium.emission):
-        return radiance_by_quadrature(medium, ray, ambient, background)
-    if isinstance(medium, PiecewiseConstantMedium | VoxelGrid) and np.ndim(medium.albedo) + np.ndim(medium.emission):
-        way = radiance_by_quadrature if is_trilinear(medium) else composite
-        return way(medium, ray, ambient, background)
+    if sources_vary(medium):
+        found: Reference = (given(medium, ROOM, "radiance") or radiance_by_quadrature)(medium, ray, ambient, background)
+        return found
 
     tau = thickness(medium, ray, channels)
     with np.errstate(under="ignore", over="ignore", invalid="ignore"):
-        scattered, absorbed = _shares(medium)
+        scattered, absorbed = shares(medium)
         survived, _, inherited = survival(tau)
         extinguished = -np.expm1(-tau.value)
         source = scattered * ambient + absorbed * medium.emission
@@ -72,12 +68,3 @@ def ambient_fog(
         error = 12 * EPS * value + inherited * np.maximum(background, source)
         error = error + 6 * TINY * (1 + np.maximum(np.maximum(background, ambient), medium.emission))
     return Reference(value, error, f"lerp of radiances, {tau.method}", SOURCE)
-
-
-def _shares(medium: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Return sigma_s / sigma_t and sigma_a / sigma_t, both 0 in an empty medium."""
-    if isinstance(medium, Medium):
-        whole = medium.sigma_t
-        nothing = np.zeros_like(whole)
-        return medium.albedo, np.divide(medium.sigma_a, whole, out=nothing, where=whole > 0)
-    return np.asarray(medium.albedo), np.subtract(1.0, medium.albedo)

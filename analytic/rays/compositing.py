@@ -5,22 +5,32 @@ L <- e^{-d tau} L + (1 - e^{-d tau}) S,    S = albedo L_i + (1 - albedo) L_e
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import Any
+
 import numpy as np
 
 from fogproof.analytic.arithmetic import double_double as dd
 from fogproof.analytic.arithmetic.error_free import ELEMENTARY, EPS, TINY, exp_minus
 from fogproof.analytic.geometry.rays import channels_of
-from fogproof.analytic.media.cells import CellMedium, segments, values
+from fogproof.analytic.media.cells import Segments, values
 from fogproof.contracts import Reference
 from fogproof.scene import Ray
 from fogproof.validate import Channels
 
 
 def composite(
-    medium: CellMedium, ray: Ray, ambient: Channels, background: Channels, *, times_sigma_a: bool = True
+    medium: Any,
+    parts: Iterator[tuple[slice, Segments]],
+    ray: Ray,
+    ambient: Channels,
+    background: Channels,
+    *,
+    times_sigma_a: bool = True,
 ) -> Reference:
     """Return the radiance that reaches the camera [W/(m^2 sr)], shape R or R + (channels,).
 
+    parts  what the rays meet in the medium, in blocks
     ambient, background, times_sigma_a  as for `radiance_by_quadrature`
 
     Error: carried along with the radiance, about 3 EPS for each cell that still shows.
@@ -32,7 +42,7 @@ def composite(
     error = np.zeros(columns)
     ceiling = max(np.max(ambient), np.max(background), medium.emission.max())
     with np.errstate(under="ignore", over="ignore", invalid="ignore", divide="ignore"):
-        for rays, part in segments(medium, ray):
+        for rays, part in parts:
             sigma, albedo, emission = (values(a, part) for a in (medium.sigma_t, medium.albedo, medium.emission))
             for i in range(part.slack.size and part.cells[0].shape[1])[::-1]:
                 length = part.length[0][:, i, None], part.length[1][:, i, None]

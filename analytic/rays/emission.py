@@ -7,14 +7,15 @@ import numpy as np
 from fogproof.analytic.arithmetic.error_free import ELEMENTARY, EPS, TINY
 from fogproof.analytic.declaration import FOG, RADIANCE, RAY, quantity
 from fogproof.analytic.geometry.rays import channels_of, rays_with_channels
-from fogproof.analytic.media.cells import is_trilinear
+from fogproof.analytic.media.coefficients import ROOM
+from fogproof.analytic.media.thickness import thickness
 from fogproof.analytic.proven.radiance import proven_radiance
 from fogproof.analytic.rays.ambient_fog import ambient_fog
-from fogproof.analytic.rays.compositing import composite, phi1
+from fogproof.analytic.rays.compositing import phi1
 from fogproof.analytic.rays.radiance_by_quadrature import radiance_by_quadrature
-from fogproof.analytic.rays.transmittance import thickness
 from fogproof.contracts import Reference
-from fogproof.scene import AnisotropicMedium, Medium, PiecewiseConstantMedium, Ray, VoxelGrid
+from fogproof.scene import AnyMedium, Ray
+from fogproof.scene.kinds import given
 from fogproof.scene.media import AnyMediumField
 
 SOURCE = "Chandrasekhar 1960, Radiative Transfer, section 7"
@@ -43,15 +44,15 @@ def emitted_radiance(
         return proven_radiance(medium, ray, times_sigma_a=times_sigma_a).reference()
     if times_sigma_a:
         return ambient_fog(medium, ray)
-    if isinstance(medium, Medium | AnisotropicMedium):
-        return _constant_extinction(medium, ray)
-    if isinstance(medium, PiecewiseConstantMedium | VoxelGrid) and not is_trilinear(medium):
-        return composite(medium, ray, 0.0, 0.0, times_sigma_a=False)
+    own = given(medium, ROOM, "emission_per_volume")
+    if own is not None:
+        found: Reference = own(medium, ray)
+        return found
     return radiance_by_quadrature(medium, ray, times_sigma_a=False)
 
 
-def _constant_extinction(medium: Medium | AnisotropicMedium, ray: Ray) -> Reference:
-    """Return q s phi1(tau), where s phi1(tau) -> s for small tau and 1/sigma_t for large."""
+def constant_extinction(medium: AnyMedium, ray: Ray) -> Reference:
+    """Return q s phi1(tau) for extinction constant along a ray; s phi1(tau) -> s for small tau, 1/sigma_t for large."""
     channels = channels_of(medium)
     tau, s = thickness(medium, ray, channels), rays_with_channels(ray, channels).length
     unit = thickness(medium, Ray(ray.origin, ray.direction, np.ones(())), channels)

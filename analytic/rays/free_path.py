@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from fogproof.analytic.arithmetic.double_double import UNIT
-from fogproof.analytic.arithmetic.error_free import EPS, TINY, two_sum
 from fogproof.analytic.declaration import RAY, quantity
 from fogproof.analytic.geometry.rays import channels_of, rays_with_channels
-from fogproof.analytic.media.exponential import exponential_free_path
-from fogproof.analytic.media.linear import linear_free_path
+from fogproof.analytic.media.coefficients import ROOM
+from fogproof.analytic.rays.bracketed_free_path import bracketed_free_path
 from fogproof.contracts import Reference
-from fogproof.errors import UnsupportedError
-from fogproof.scene import ExponentialMedium, LinearMedium, Medium, Ray
+from fogproof.scene import Ray
 from fogproof.scene.arrays import FloatArray
+from fogproof.scene.kinds import given
 from fogproof.scene.media import AnyMediumField
 from fogproof.validate import as_float_array, require
 
@@ -31,7 +29,8 @@ from fogproof.validate import as_float_array, require
 def free_path(medium: AnyMediumField, ray: Ray, tau: FloatArray) -> Reference:
     """Return the smallest distance t [m] at which the optical thickness reaches tau, inf if the ray ends before.
 
-    medium  homogeneous, linear or exponential: those with a closed form
+    medium  of any kind; homogeneous, linear and exponential ones have a closed form, for the others the thickness is
+            enclosed from both sides
     tau     (...) >= 0, broadcast against the rays; tau = -log1p(-xi) makes it the inverse of the free-path
             distribution for a uniform xi
 
@@ -47,25 +46,12 @@ def free_path(medium: AnyMediumField, ray: Ray, tau: FloatArray) -> Reference:
     wide = Ray(np.broadcast_to(ray.origin, (*shape, 3)), np.broadcast_to(ray.direction, (*shape, 3)), ray.length)
     rays = rays_with_channels(wide, channels)
     wanted = tau if channels is None else tau[..., None]
-    match medium:
-        case Medium():
-            value, error = _homogeneous(medium, wanted)
-        case LinearMedium():
-            value, error = linear_free_path(medium, rays, wanted)
-        case ExponentialMedium():
-            value, error = exponential_free_path(medium, rays, wanted)
-        case _:
-            known = "Medium, LinearMedium and ExponentialMedium"
-            raise UnsupportedError(f"free_path knows {known}, got {type(medium).__name__}", "medium")
+    own = given(medium, ROOM, "free_path")
+    if own is None:
+        return bracketed_free_path(medium, wide, tau, channels)
+    value, error = own(medium, rays, wanted)
     value, error = np.broadcast_to(value, rays.shape), np.broadcast_to(error, rays.shape)
     with np.errstate(invalid="ignore"):
         close = (np.abs(value - rays.length) <= error) & np.isfinite(rays.length)
     value = np.where(value > rays.length, np.inf, value)
     return Reference(value, np.where(close, np.inf, error), "closed form", "elementary")
-
-
-def _homogeneous(medium: Medium, tau: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    sigma = two_sum(medium.sigma_a, medium.sigma_s)[0]
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore", under="ignore"):
-        value = np.where(tau > 0, tau / sigma, 0.0)
-    return value, np.where(np.isinf(value), 0.0, (1.5 * EPS + UNIT) * value + TINY)

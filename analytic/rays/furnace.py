@@ -13,9 +13,10 @@ import numpy as np
 
 from fogproof.analytic.declaration import FOG, RADIANCE, RAY, quantity
 from fogproof.analytic.geometry.rays import channels_of
+from fogproof.analytic.media.coefficients import shares
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError
-from fogproof.scene import AnyMedium, Medium, Ray
+from fogproof.scene import AnyMedium, Ray
 from fogproof.scene.arrays import ChannelArray
 from fogproof.scene.media import AnyMediumField
 from fogproof.validate import nonnegative_channels
@@ -59,9 +60,13 @@ def thermal_furnace(medium: AnyMediumField, ray: Ray, radiance: ChannelArray = 1
 def _require(medium: Any, name: str, wanted: Any, why: str) -> None:
     channels_of(medium)
     value = getattr(medium, name)
-    if name == "albedo" and isinstance(medium, Medium):
-        value = np.where(medium.sigma_t > 0, medium.albedo, 1.0)
-    if callable(value) or not np.all(np.equal(value, wanted)):
+    if callable(value):
+        fits = False
+    elif name == "albedo":  # by what is absorbed: beside 1, sigma_a = 1e-20 would be lost
+        fits = not np.any(shares(medium)[1])
+    else:
+        fits = bool(np.all(np.equal(value, wanted)))
+    if not fits:
         raise InvalidValueError(name, f"must be {wanted} {why}", value)
 
 

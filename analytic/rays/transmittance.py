@@ -4,31 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from fogproof.analytic.arithmetic.double_double import UNIT
-from fogproof.analytic.arithmetic.error_free import ELEMENTARY, EPS, TINY, exp_minus, sum_times
+from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.analytic.declaration import RAY, quantity
-from fogproof.analytic.geometry.rays import Rays, Thickness, channels_of, rays_with_channels
-from fogproof.analytic.media.adaptive import procedural_thickness
-from fogproof.analytic.media.anisotropic import anisotropic_thickness
-from fogproof.analytic.media.cells import cell_thickness
-from fogproof.analytic.media.exponential import exponential_thickness
-from fogproof.analytic.media.linear import linear_thickness
-from fogproof.analytic.media.opengl_fog import fog_thickness
+from fogproof.analytic.geometry.rays import channels_of
+from fogproof.analytic.media.thickness import survival, thickness
 from fogproof.analytic.proven.radiance import proven_thickness, proven_transmittance
 from fogproof.contracts import Reference
-from fogproof.scene import (
-    AnisotropicMedium,
-    AnyMedium,
-    ExponentialMedium,
-    LinearMedium,
-    Medium,
-    OpenGLFog,
-    Procedural,
-    Ray,
-)
+from fogproof.scene import Ray
 from fogproof.scene.media import AnyMediumField
-
-SOURCE = "Bouguer 1729, Beer 1852; Chandrasekhar 1960, Radiative Transfer, section 7"
 
 
 @quantity(
@@ -73,44 +56,3 @@ def transmittance(medium: AnyMediumField, ray: Ray, *, rigorous: bool = False) -
     tau = thickness(medium, ray, channels_of(medium))
     value, rounding, inherited = survival(tau)
     return Reference(value, rounding + inherited, f"exp(-tau), {tau.method}", tau.source)
-
-
-def survival(tau: Thickness) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return exp(-tau), the bound of its rounding error, and of the error it inherits from tau."""
-    value, rounding = exp_minus(tau.value, tau.low)
-    with np.errstate(under="ignore", over="ignore", invalid="ignore"):
-        inherited = np.where(tau.error > 0, (value + 2 * TINY) * np.expm1(tau.error), 0.0)
-        at_most = np.exp(-np.maximum(tau.value - tau.error, 0.0)) * (1 + ELEMENTARY) + 2 * TINY
-    return value, rounding, np.fmin(inherited, at_most)
-
-
-def thickness(medium: AnyMedium, ray: Ray, channels: int | None) -> Thickness:
-    """Return tau in the full shape of a result with that many channels."""
-    rays = rays_with_channels(ray, channels)
-    match medium:
-        case Medium():
-            tau = _homogeneous(medium, rays)
-        case LinearMedium():
-            tau = linear_thickness(medium, rays)
-        case ExponentialMedium():
-            tau = exponential_thickness(medium, rays)
-        case AnisotropicMedium():
-            tau = anisotropic_thickness(medium, rays)
-        case OpenGLFog():
-            tau = fog_thickness(medium, rays)
-        case Procedural():
-            tau = procedural_thickness(medium, ray)
-        case _:
-            tau = cell_thickness(medium, ray)
-
-    def shaped(x: np.ndarray) -> np.ndarray:
-        return np.broadcast_to(x if x.ndim == len(rays.shape) else x[..., None], rays.shape)
-
-    return Thickness(shaped(tau.value), shaped(tau.low), shaped(tau.error), tau.method, tau.source)
-
-
-def _homogeneous(medium: Medium, rays: Rays) -> Thickness:
-    value, low = sum_times(medium.sigma_a, medium.sigma_s, rays.length)
-    with np.errstate(under="ignore", invalid="ignore"):
-        error = np.where(np.isinf(value), 0.0, UNIT * value + 2 * TINY)
-    return Thickness(value, low, error, "tau = sigma_t s, unrounded", SOURCE)

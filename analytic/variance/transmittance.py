@@ -3,7 +3,8 @@
 A tracker walks along the ray in steps of an exponential distribution of rate majorant and looks sigma_t up at each
 tentative collision. Delta tracking stops with probability sigma_t/majorant and scores 1 if it never does; ratio
 tracking multiplies its weight by 1 - sigma_t/majorant; residual-ratio tracking by 1 - (sigma_t - control)/majorant, and
-by exp(-control s) at the end. The collisions are a Poisson process, so the moments of the weight are
+by exp(-control s) at the end, s being what lies in the medium's box. The collisions are a Poisson process, so the
+moments of the weight are
 
     E[w^p] = exp(-p int control dt - int majorant (1 - (1 - (sigma_t - control)/majorant)^p) dt).
 """
@@ -19,16 +20,17 @@ from fogproof.analytic.arithmetic.panel_rule import NODES
 from fogproof.analytic.declaration import FOG, RAY, quantity
 from fogproof.analytic.geometry.rays import Thickness, channels_of, rays_with_channels
 from fogproof.analytic.media.adaptive import integrate_along
-from fogproof.analytic.media.breakpoints import breakpoints
-from fogproof.analytic.media.coefficients import coefficients
+from fogproof.analytic.media.breakpoints import between, breakpoints, extent
+from fogproof.analytic.media.coefficients import ROOM, coefficients, shares
+from fogproof.analytic.media.squared_extinction import squared_extinction
+from fogproof.analytic.media.thickness import survival, thickness
 from fogproof.analytic.rays.compositing import phi1
-from fogproof.analytic.rays.transmittance import survival, thickness
-from fogproof.analytic.variance.squared_extinction import squared_extinction
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError, UnsupportedError
-from fogproof.scene import AnyMedium, Medium, PiecewiseConstantMedium, Ray, VoxelGrid
+from fogproof.scene import AnyMedium, Ray
 from fogproof.scene.arrays import ChannelArray
-from fogproof.scene.media import AnyMediumField
+from fogproof.scene.kinds import given
+from fogproof.scene.media import AnyMediumField, box, sources_vary
 from fogproof.validate import Channels, nonnegative_channels, require
 
 Tracking = Literal["delta", "ratio", "residual-ratio"]
@@ -57,7 +59,7 @@ def transmittance_second_moment(
     tracking  "delta", "ratio" or "residual-ratio"
     majorant  rate of the tentative collisions [1/m], grey or one value a channel; with delta tracking it must not lie
               below sigma_t and has no influence; ratio tracking is unbiased for every majorant > 0
-    control   control extinction of residual-ratio tracking [1/m], which holds along the whole ray, vacuum included
+    control   control extinction of residual-ratio tracking [1/m], which holds wherever the medium's box is, vacuum in it included
 
     Error: a few EPS relative and what the integrals of sigma_t and sigma_t^2 inherit; estimated for a user's function.
     """
@@ -109,27 +111,48 @@ def transmittance_lookups(
 ) -> Reference:
     """Return the expected number of look-ups of sigma_t of one realisation, shape R or R + (channels,).
 
-    Delta tracking stops at its first real collision: int majorant T dt. The others go on to the end: int majorant dt.
+    A tracker looks at its tentative collisions, which happen wherever the medium's box is (`lower` to `upper`, everywhere for
+    kinds without one), in the vacuum around layers too. Delta tracking stops at its first real collision: int majorant T dt
+    over the part of the ray in the box. The others go on to the end: int majorant dt.
     Arguments as for `transmittance_second_moment`. Error: a few EPS relative; delta in a heterogeneous medium, estimated.
     """
     channels = channels_of(medium, majorant=_majorant(majorant))
     _moments(medium, ray, tracking, majorant, control)  # checks the arguments
     rate = np.asarray(_majorant(majorant), float)
-    length = rays_with_channels(ray, channels).length
     shape = ray.shape if channels is None else (*ray.shape, channels)
+    uniform = given(medium, ROOM, "uniform")
     with np.errstate(all="ignore"):
+        inside = tracked_stretch(medium, ray, channels)
         if tracking != "delta":
-            value, error, method = rate * length, EPS * rate * length, "majorant times length"
-        elif isinstance(medium, Medium):
-            tau, sigma = thickness(medium, ray, channels), np.asarray(medium.sigma_t)
+            value = np.where(inside.length > 0, rate * inside.length, 0.0)
+            error, method = EPS * value + rate * inside.error, "majorant times length"
+        elif uniform is not None:
+            tau, sigma = thickness(medium, ray, channels), uniform(medium)[0]
+            length = rays_with_channels(ray, channels).length
             value = np.where(tau.value < 1, rate * length * phi1(tau.value), -np.expm1(-tau.value) * rate / sigma)
             error, method = (2 * ELEMENTARY + 6 * EPS) * value, "majorant (1 - T)/sigma_t"
         else:
-            along = integrate_along(medium, ray, lambda local: np.broadcast_to(rate, local.sigma_t.shape), channels)
-            value, error = along.gain.reshape(shape), along.gain_error.reshape(shape)
+            value, error = _delta_lookups(medium, ray, rate, channels, inside)
             method = "adaptive Gauss-Legendre 16 of the transmittance"
         error = np.where(np.isfinite(value), error, 0.0) + TINY
     return Reference(np.broadcast_to(value, shape), np.broadcast_to(error, shape), method, SOURCE)
+
+
+def _delta_lookups(
+    medium: AnyMedium, ray: Ray, rate: np.ndarray, channels: int | None, inside: Stretch
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return int rate T dt over the stretch of each ray in the box, vacuum before and behind the medium included."""
+    shape = ray.shape if channels is None else (*ray.shape, channels)
+    along = integrate_along(medium, ray, lambda local: np.broadcast_to(rate, local.sigma_t.shape), channels)
+    tau, tau_error, gain, gain_error = (x.reshape(shape) for x in along)
+    enter, leave = (x.reshape(inside.enter.shape) for x in extent(medium, ray)[:2])
+    met = leave > enter
+    before = np.where(met, np.maximum(enter - inside.enter, 0.0), inside.length)
+    behind = np.where(met, np.maximum(inside.leave - leave, 0.0), 0.0)
+    after = np.where(behind > 0, np.exp(-tau) * behind, 0.0)
+    value = gain + rate * (before + after)
+    error = gain_error + rate * (after * np.expm1(tau_error) + 2 * inside.error) + 8 * EPS * value
+    return value, error
 
 
 @quantity(
@@ -151,11 +174,7 @@ def ambient_fog_variance(
     ambient = nonnegative_channels("ambient", ambient, "W/(m^2 sr)")
     background = nonnegative_channels("background", background, "W/(m^2 sr)")
     channels = channels_of(medium, ambient=ambient, background=background)
-    if isinstance(medium, PiecewiseConstantMedium | VoxelGrid):
-        varies = medium.albedo.ndim + medium.emission.ndim > 0
-    else:
-        varies = callable(medium.albedo) or callable(medium.emission)
-    if varies:
+    if sources_vary(medium):
         raise UnsupportedError(
             "the variance of fog needs an albedo and an emission that are constant in space", "medium"
         )
@@ -163,9 +182,8 @@ def ambient_fog_variance(
     with np.errstate(all="ignore"):
         survived, rounding, inherited = survival(tau)
         lost = -np.expm1(-tau.value)
-        albedo = np.asarray(medium.albedo)
-        absorbed = np.divide(medium.sigma_a, medium.sigma_t) if isinstance(medium, Medium) else 1 - albedo
-        source = np.where(tau.value > 0, albedo * ambient + absorbed * medium.emission, 0.0)
+        scattered, absorbed = shares(medium)
+        source = np.where(tau.value > 0, scattered * ambient + absorbed * medium.emission, 0.0)
         contrast = source - background
         off = 4 * EPS * source + EPS * np.abs(contrast)
         value = contrast * contrast * survived * lost
@@ -214,10 +232,11 @@ def _moments(medium: AnyMedium, ray: Ray, tracking: Tracking, majorant: Any, con
     if tracking == "delta":
         _require_bound(medium, ray, mu, channels)
         return _Moments(tau, None, 0.0, 0.0, "")
-    length = rays_with_channels(ray, channels).length
+    uniform = given(medium, ROOM, "uniform")
     with np.errstate(all="ignore"):
-        if isinstance(medium, Medium):
-            sigma, sigma_low = two_sum(medium.sigma_a, medium.sigma_s)
+        if uniform is not None:
+            length = rays_with_channels(ray, channels).length
+            sigma, sigma_low = uniform(medium)
             off = (sigma - c) + sigma_low
             V = np.broadcast_to(np.where(off == 0, 0.0, off * (off * length) / mu), tau.value.shape)
             # On an infinite ray both V and tau are infinite; what counts is the sign of the rate of V - 2 tau.
@@ -227,10 +246,35 @@ def _moments(medium: AnyMedium, ray: Ray, tracking: Tracking, majorant: Any, con
         square = squared_extinction(medium, ray, channels)
         if not (np.isfinite(square.value) & np.isfinite(tau.value)).all():
             raise UnsupportedError("the integral of sigma_t^2 along the ray is infinite: shorten the ray", "ray")
-        V = np.maximum(square.value - 2 * c * tau.value + np.where(c > 0, c * c * length, 0.0), 0.0) / mu
-        size = square.value + 2 * c * tau.value + np.where(c > 0, c * c * length, 0.0)
-        V_error = (square.error + 2 * c * tau.error + 6 * EPS * size) / mu
+        inside = tracked_stretch(medium, ray, channels)
+        controlled = np.where(c > 0, c * c * inside.length, 0.0)
+        V = np.maximum(square.value - 2 * c * tau.value + controlled, 0.0) / mu
+        size = square.value + 2 * c * tau.value + controlled
+        V_error = (square.error + 2 * c * tau.error + 6 * EPS * size + c * c * inside.error) / mu
         return _Moments(tau, V, V_error, np.nan, square.method)
+
+
+class Stretch(NamedTuple):
+    """The part of each ray on which trackers collide, in the medium's box: ends, length and its error [m], R or R + (1,)."""
+
+    enter: np.ndarray
+    leave: np.ndarray
+    length: np.ndarray
+    error: np.ndarray
+
+
+def tracked_stretch(medium: AnyMedium, ray: Ray, channels: int | None) -> Stretch:
+    """Return where trackers walk: within the box of the medium."""
+    lower, upper = box(medium)
+    shape = ray.shape if channels is None else (*ray.shape, 1)
+    origin, direction, length = ray.origin.reshape(-1, 3), ray.direction.reshape(-1, 3), ray.length.reshape(-1)
+    enter, leave = between(origin, direction, lower, upper, length)
+    ends = np.where(np.isfinite(np.stack([enter, leave])), np.stack([enter, leave]), 0.0)
+    cut = (enter > 0) | (leave < length)
+    reach = np.max(np.abs(origin), axis=-1) + np.max(np.where(np.isfinite(lower), np.abs(lower), 0.0))
+    slope = np.max(np.abs(direction), axis=-1)
+    error = np.where(cut, 4 * EPS * (ends.max(axis=0) + reach / slope), 0.0)
+    return Stretch(*(x.reshape(shape) for x in (enter, leave, leave - enter, error)))
 
 
 def _majorant(majorant: Any) -> Channels:
@@ -243,8 +287,9 @@ def _majorant(majorant: Any) -> Channels:
 
 def _require_bound(medium: AnyMedium, ray: Ray, majorant: np.ndarray, channels: int | None) -> None:
     """Refuse a majorant below sigma_t, wherever 16 nodes between the medium's breaks along the rays see it."""
-    if isinstance(medium, Medium):
-        highest = np.asarray(medium.sigma_t)
+    uniform = given(medium, ROOM, "uniform")
+    if uniform is not None:
+        highest = uniform(medium)[0]
     else:
         edges = breakpoints(medium, ray)
         t = edges[:, :-1, None] + np.diff(edges, axis=-1)[..., None] * NODES

@@ -15,9 +15,11 @@ from fogproof.estimators.airlight.occlusion import lit
 from fogproof.estimators.airlight.shadow_rays import ShadowRays, shadow_transmittance
 from fogproof.estimators.airlight.shapes import through
 from fogproof.estimators.free_paths.extinction import Extinction, along
-from fogproof.estimators.free_paths.fog import everywhere
+from fogproof.estimators.free_paths.fog import everywhere, shares
+from fogproof.estimators.media import ROOM
 from fogproof.estimators.phase.functions import phase_value
-from fogproof.scene import AnyMedium, Medium, PhaseFunction, Ray
+from fogproof.scene import AnyMedium, PhaseFunction, Ray
+from fogproof.scene.kinds import given
 from fogproof.scene.lights import Light
 from fogproof.scene.occluders import Occluder
 from fogproof.scene.phase import constant_phase
@@ -50,7 +52,7 @@ class LitMedium:
             raise InvalidValueError(
                 "shadow_rays", f"must be one of {', '.join(get_args(ShadowRays))}", self.shadow_rays
             )
-        if self.shape != EVERYWHERE and not isinstance(self.medium, Medium):
+        if self.shape != EVERYWHERE and given(self.medium, ROOM, "uniform") is None:
             raise UnsupportedError("only a homogeneous medium fills a shape", "shape")
 
     @cached_property
@@ -78,7 +80,8 @@ class LitMedium:
     @cached_property
     def albedo(self) -> float:
         """sigma_s / sigma_t."""
-        return everywhere(self.medium)[0]
+        everywhere(self.medium)
+        return shares(self.medium)[0]
 
     @property
     def phase(self) -> PhaseFunction:
@@ -110,9 +113,10 @@ class LitMedium:
             return self._scattered_from_extent(sample, t, rng)
         mu, distance, irradiance = self._illumination(self.start + t)
         value = self.albedo * self.extinction.sigma(t) * phase_value(self.phase, mu) * irradiance
-        plain = isinstance(self.medium, Medium) and self.shape == EVERYWHERE and self.shadow_rays == "exact"
+        uniform = given(self.medium, ROOM, "uniform")
+        plain = uniform is not None and self.shape == EVERYWHERE and self.shadow_rays == "exact"
         if plain and not self.occluders:
-            sigma_t = float(np.asarray(self.medium.sigma_t))  # type: ignore[union-attr]
+            sigma_t = float(uniform(self.medium))
             return value * np.exp(-sigma_t * distance) if sigma_t > 0 else value, np.ones_like(t)
         x = self.points(t)
         w = towards(self.light, x)

@@ -11,10 +11,11 @@ from typing import Literal
 import numpy as np
 
 from fogproof.errors import UnsupportedError
+from fogproof.estimators.media import ROOM
 from fogproof.estimators.tracking.medium_data import look_ups
 from fogproof.estimators.tracking.ratio import ratio_tracking
-from fogproof.estimators.tracking.regular import regular_tracking
-from fogproof.scene import AnyMedium, ExponentialMedium, LinearMedium, Medium, Ray, VoxelGrid
+from fogproof.scene import AnyMedium, Ray
+from fogproof.scene.kinds import given
 
 ShadowRays = Literal["exact", "ratio", "march"]
 """In closed form or cell by cell; by ratio tracking, unbiased; by a sum over midpoints, biased."""
@@ -67,43 +68,10 @@ def by_marching(medium: AnyMedium, x: np.ndarray, w: np.ndarray, way: np.ndarray
 
 
 def exact(medium: AnyMedium, x: np.ndarray, w: np.ndarray, way: np.ndarray) -> Answer:
-    """Closed forms, or every voxel on the way."""
-    cost = np.ones_like(way)
-    match medium:
-        case Medium():
-            depth = _constant(float(medium.sigma_t), way)
-        case LinearMedium():
-            depth = _linear(float(np.asarray(medium.sigma_0)) + medium.gradient @ x, medium.gradient @ w, way)
-        case ExponentialMedium():
-            depth = _exponential(float(np.asarray(medium.sigma_0)) * np.exp(medium.rate @ x), medium.rate @ w, way)
-        case VoxelGrid():
-            rays = Ray(x.T, w.T, np.maximum(way, np.finfo(float).tiny))
-            walks = regular_tracking(medium, rays)
-            depth, cost = walks.tau, walks.cells
-        case _:
-            name = type(medium).__name__
-            raise UnsupportedError(f"shadow rays in a {name} have no closed form: take 'ratio'", "shadow_rays")
+    """Closed forms, or every cell on the way."""
+    own = given(medium, ROOM, "depth_towards")
+    if own is None:
+        name = type(medium).__name__
+        raise UnsupportedError(f"shadow rays in a {name} have no closed form: take 'ratio'", "shadow_rays")
+    depth, cost = own(medium, x, w, way)
     return np.exp(-depth), cost
-
-
-def _constant(sigma: float, way: np.ndarray) -> np.ndarray:
-    return sigma * way if sigma > 0 else np.zeros_like(way)
-
-
-def _linear(near: np.ndarray, slope: np.ndarray, way: np.ndarray) -> np.ndarray:
-    """The area under a line clamped at 0: a trapezium, or a triangle where the line crosses 0 on the way."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        far = np.where(slope == 0, near, near + slope * way)
-        high = np.maximum(np.maximum(near, far), 0)
-        crosses = (near < 0) != (far < 0)
-        base = np.where(crosses, high / np.abs(slope), way)
-        mean = np.where(crosses, 0.5 * high, np.maximum(0.5 * (near + far), 0))
-        return np.where(mean > 0, mean * base, 0.0)
-
-
-def _exponential(near: np.ndarray, rate: np.ndarray, way: np.ndarray) -> np.ndarray:
-    """near (e^(rate way) - 1)/rate, near way where the rate is 0."""
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        x = rate * way
-        depth = np.where(np.abs(x) > 0, near * np.expm1(x) / rate, near * way)
-    return np.where(near > 0, depth, 0.0)

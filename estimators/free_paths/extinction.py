@@ -12,10 +12,12 @@ from typing import Protocol
 import numpy as np
 
 from fogproof.errors import InvalidValueError, UnsupportedError
-from fogproof.estimators.grey import grey
-from fogproof.estimators.tracking.medium_data import box, grey_medium, look_ups
+from fogproof.estimators.media import ROOM
+from fogproof.estimators.tracking.medium_data import grey_medium, look_ups
 from fogproof.estimators.tracking.optical_depth import optical_depth
-from fogproof.scene import AnisotropicMedium, AnyMedium, ExponentialMedium, LinearMedium, Medium, OpenGLFog, Ray
+from fogproof.scene import AnyMedium, Ray
+from fogproof.scene.kinds import given
+from fogproof.scene.media import box
 from fogproof.validate import number
 
 
@@ -217,25 +219,6 @@ def along(medium: AnyMedium, ray: Ray) -> Extinction:
     """Return the extinction along one ray of a grey medium, in closed form where there is one."""
     if ray.shape:
         raise UnsupportedError(f"an estimator looks along one ray, got a batch of shape {ray.shape}", "ray")
-    origin, direction = ray.origin, ray.direction
-    match medium:
-        case Medium():
-            return Constant(grey("sigma_a", medium.sigma_a) + grey("sigma_s", medium.sigma_s))
-        case AnisotropicMedium():
-            return Constant(grey("sigma", medium.sigma) * float(np.sqrt(direction @ medium.S @ direction)))
-        case LinearMedium() if medium.gradient.ndim == 1:
-            gradient = medium.gradient
-            return Linear(grey("sigma_0", medium.sigma_0) + float(gradient @ origin), float(gradient @ direction))
-        case ExponentialMedium() if medium.rate.ndim == 1:
-            at_origin = grey("sigma_0", medium.sigma_0) * float(np.exp(medium.rate @ origin))
-            return Exponential(at_origin, float(medium.rate @ direction))
-        case OpenGLFog():
-            if not np.array_equal(origin, medium.eye):
-                raise UnsupportedError("the fog of OpenGL is defined for rays from the eye only", "ray.origin")
-            match medium.mode:
-                case "exp":
-                    return Constant(medium.density)
-                case "exp2":
-                    return Linear(0.0, 2 * medium.density**2)
-            return Vanishing(medium.start, medium.end)
-    return LookedUp(grey_medium(medium), ray)
+    own = given(medium, ROOM, "along")
+    found: Extinction = own(medium, ray) if own is not None else LookedUp(grey_medium(medium), ray)
+    return found

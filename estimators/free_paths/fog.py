@@ -10,18 +10,19 @@ from fogproof.contracts import Draws
 from fogproof.errors import UnsupportedError
 from fogproof.estimators.free_paths.extinction import along
 from fogproof.estimators.free_paths.free_path import FreePath, HomogeneousSpectralFreePath, TruncatedFreePath
-from fogproof.estimators.grey import grey
+from fogproof.estimators.media import ROOM
 from fogproof.estimators.tracking.medium_data import grey_medium
 from fogproof.scene import AnyMedium, Medium, Ray
+from fogproof.scene.kinds import given
+from fogproof.scene.media import sources_vary
 from fogproof.validate import Channels
 
 
 def everywhere(medium: AnyMedium) -> tuple[float, float]:
     """Return albedo and emission [W/(m^2 sr)] of a grey medium in which they are the same everywhere."""
     grey_medium(medium)
-    for value in (medium.albedo, medium.emission):
-        if callable(value) or np.ndim(value) > 0:
-            raise UnsupportedError("albedo and emission must be the same everywhere", "medium")
+    if sources_vary(medium):
+        raise UnsupportedError("albedo and emission must be the same everywhere", "medium")
     return float(np.asarray(medium.albedo)), float(np.asarray(medium.emission))
 
 
@@ -30,11 +31,19 @@ def source_per_collision(medium: AnyMedium, ambient: float) -> float:
 
     The source sigma_s L_i + sigma_a L_e over sigma_t: what a collision sees, because T / p(t) is 1 / sigma_t there.
     """
-    albedo, emission = everywhere(medium)
-    if isinstance(medium, Medium):
-        sigma_a, sigma_t = grey("sigma_a", medium.sigma_a), float(medium.sigma_t)
-        return (grey("sigma_s", medium.sigma_s) * ambient + sigma_a * emission) / sigma_t if sigma_t > 0 else 0.0
-    return albedo * ambient + (1 - albedo) * emission
+    emission = everywhere(medium)[1]
+    scattered, absorbed = shares(medium)
+    return scattered * ambient + absorbed * emission
+
+
+def shares(medium: AnyMedium) -> tuple[float, float]:
+    """Return sigma_s / sigma_t and sigma_a / sigma_t of a grey medium in which they are the same everywhere."""
+    own = given(medium, ROOM, "shares")
+    if own is not None:
+        found: tuple[float, float] = own(medium)
+        return found
+    albedo = everywhere(medium)[0]
+    return albedo, 1 - albedo
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,6 +134,6 @@ class UniformEmission:
         """Return n realisations of the radiance, each at the cost of one look at the medium."""
         extinction, length = along(self.medium, self.ray), float(self.ray.length)
         t = length * rng.random(n)
-        albedo, emission = everywhere(self.medium)
-        source = emission * (1 - albedo) * extinction.sigma(t) if self.times_sigma_a else emission
+        emission = everywhere(self.medium)[1]
+        source = emission * shares(self.medium)[1] * extinction.sigma(t) if self.times_sigma_a else emission
         return Draws(length * np.exp(-extinction.depth(t)) * source, cost=np.ones(n))

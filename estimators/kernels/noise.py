@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
 import numpy as np
 
 from fogproof.estimators.kernels.compiling import inlined
@@ -54,3 +56,18 @@ def fractal_noise(
         weight *= gain
         frequency *= 2
     return 0.5 + 0.5 * total / most
+
+
+class NoiseData(NamedTuple):
+    """Fractal noise, see `fogproof.estimators.FractalNoise`."""
+
+    density: float
+    frequency: float
+    octaves: int
+    gain: float
+    table: np.ndarray
+
+    @staticmethod
+    def extinction(medium: Any, channel: int, x: float, y: float, z: float) -> float:
+        """Return the extinction at a point [1/m]; in kernels only."""
+        return medium.density * fractal_noise(medium.table, medium.frequency, medium.octaves, medium.gain, x, y, z)

@@ -9,19 +9,13 @@ import numpy as np
 from fogproof.errors import UnsupportedError
 from fogproof.estimators.kernels import path_data as data
 from fogproof.estimators.kernels.data import BlockBound, Lattice, RayBound
+from fogproof.estimators.media import ROOM
 from fogproof.estimators.tracking.majorant_grid import MajorantGrid
-from fogproof.estimators.tracking.medium_data import box, look_ups, medium_data
-from fogproof.scene import (
-    AnyMedium,
-    ExponentialMedium,
-    LinearMedium,
-    Medium,
-    PiecewiseConstantMedium,
-    Procedural,
-    VoxelGrid,
-)
+from fogproof.estimators.tracking.medium_data import medium_data
+from fogproof.scene import AnyMedium
 from fogproof.scene.kinds import given
 from fogproof.scene.lights import Light
+from fogproof.scene.media import box
 from fogproof.scene.shapes import Shape
 from fogproof.scene.surfaces import Surface
 from fogproof.validate import number
@@ -66,8 +60,9 @@ def medium_and_bound(
     majorant  of the extinction [1/m]: a number, in blocks, or None for the medium's own, which a homogeneous one does not need
     channels  None if the kernel is one for grey light
     """
-    if isinstance(medium, Medium) and majorant is None:
-        sigma = np.asarray(medium.sigma_t)
+    uniform = given(medium, ROOM, "uniform")
+    if uniform is not None and majorant is None:
+        sigma = uniform(medium)
         if channels is None:
             return data.UniformData(float(sigma)), None
         return data.UniformSpectralData(np.array(np.broadcast_to(sigma, channels))), None
@@ -91,26 +86,9 @@ def medium_and_bound(
 
 def _greatest(medium: AnyMedium, shape: Shape) -> float:
     """Return the greatest extinction in a shape, or a bound of it [1/m]."""
-    match medium:
-        case VoxelGrid() | PiecewiseConstantMedium() | Medium():
-            return float(np.max(medium.sigma_t))
-        case Procedural():
-            return medium.majorant
-        case LinearMedium() | ExponentialMedium():
-            vectors = np.atleast_2d(medium.gradient if isinstance(medium, LinearMedium) else medium.rate)
-            corners = np.concatenate([_extremes(vector, shape) for vector in vectors])
-            return float(look_ups(medium)(corners, np.zeros_like(corners)).max())
-    raise UnsupportedError(f"path tracing knows no {type(medium).__name__}", "medium")
-
-
-def _extremes(vector: np.ndarray, shape: Shape) -> np.ndarray:
-    """Return points (k, 3) of a shape among which is the one farthest along a vector (3,)."""
-    length = float(np.linalg.norm(vector))
-    if length == 0:
-        return np.zeros((1, 3))
-    farthest = given(shape, "fogproof.estimators.shapes", "farthest")
-    points = None if farthest is None else farthest(shape, vector)
-    if points is not None:
-        return np.asarray(points)
-    fix = "give a majorant, or a shape in which it is bounded"
-    raise UnsupportedError(f"the extinction is not bounded in this {type(shape).__name__}; {fix}", "majorant")
+    own = given(medium, ROOM, "greatest")
+    if own is None:
+        what = f"no bound of the extinction of a {type(medium).__name__} is known"
+        raise UnsupportedError(f"{what}: give a majorant", "majorant")
+    most: float = own(medium, shape)
+    return most

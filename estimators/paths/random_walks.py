@@ -9,13 +9,13 @@ import numpy as np
 
 from fogproof.contracts import Draws
 from fogproof.errors import InvalidValueError, UnsupportedError
-from fogproof.estimators.grey import grey
 from fogproof.estimators.kernels.path_data import PathRules, PathScene
+from fogproof.estimators.media import ROOM
 from fogproof.estimators.paths import data as path_data
 from fogproof.estimators.paths.tracer import ENDLESS, trace, whole
 from fogproof.estimators.phase.functions import kernel_lobe
 from fogproof.estimators.tracking.majorant_grid import MajorantGrid
-from fogproof.scene import AnyMedium, Isotropic, Medium, PhaseFunction
+from fogproof.scene import AnyMedium, Isotropic, PhaseFunction
 from fogproof.scene.kinds import given
 from fogproof.scene.shapes import Shape
 from fogproof.validate import number
@@ -109,7 +109,8 @@ class ScatteringsUnderUniformSky:
     @cached_property
     def _scene(self) -> PathScene:
         rules = PathRules(1.0, 0.0, 1.0, False, True, ENDLESS, -1.0, ENDLESS, 1.0, ENDLESS)
-        medium = Medium(0.0, grey("sigma_s", self.medium.sigma_s)) if isinstance(self.medium, Medium) else self.medium
+        scattering = given(self.medium, ROOM, "without_absorption")
+        medium = self.medium if scattering is None else scattering(self.medium)
         data, bound = path_data.medium_and_bound(medium, self.shape, self.majorant)
         lobe = kernel_lobe(self.medium.phase)
         region = path_data.region(self.shape)

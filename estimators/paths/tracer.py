@@ -15,7 +15,6 @@ import numpy as np
 from fogproof.contracts import Draws
 from fogproof.errors import InvalidValueError, UnsupportedError
 from fogproof.estimators.free_paths.fog import everywhere
-from fogproof.estimators.kernels.data import ChromaticFieldData, FieldData
 from fogproof.estimators.kernels.path_data import PathRows, PathRules, PathScene
 from fogproof.estimators.paths import data as path_data
 from fogproof.estimators.phase.functions import kernel_lobe
@@ -151,7 +150,7 @@ def run(
     from fogproof.estimators.kernels.compiling import uncached
 
     rows = PathRows(np.empty((n, columns)), np.empty(n), np.empty(n, np.int64), np.empty(n))
-    if isinstance(scene[0].medium, FieldData | ChromaticFieldData):
+    if getattr(scene[0].medium, "of_user", False):
         kernel = uncached(kernel)
     refuse(*kernel(rng, *scene, np.array(origin), np.array(direction), rows))
     return rows

@@ -48,8 +48,8 @@ class CompiledField:
     def __call__(self, x: Any) -> np.ndarray:
         """Return sigma_t [1/m] at points (..., 3), shape (...) or (..., channels)."""
         from fogproof.estimators.kernels.compiling import uncached
-        from fogproof.estimators.kernels.data import ChromaticFieldData, FieldData
         from fogproof.estimators.kernels.tracking import look_up
+        from fogproof.estimators.media.procedural import ChromaticFieldData, FieldData
 
         x = np.asarray(x, dtype=np.float64)
         sigma = np.empty((x.size // 3, self.channels or 1))

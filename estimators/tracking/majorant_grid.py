@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from fogproof.errors import InvalidValueError, UnsupportedError
-from fogproof.scene import AnyMedium, Procedural, VoxelGrid
+from fogproof.scene import AnyMedium, VoxelGrid
+from fogproof.scene.media import box
 from fogproof.validate import as_float_array, points, require
 
 
@@ -68,14 +69,15 @@ class MajorantGrid:
 
     def require_around(self, medium: AnyMedium) -> None:
         """Raise unless the medium is known to end inside the box."""
-        if not isinstance(medium, (VoxelGrid, Procedural)):
+        if not hasattr(medium, "lower"):
             name = type(medium).__name__
             raise UnsupportedError(
                 f"a {name} does not end; a majorant grid does: give the majorant as a number", "majorant"
             )
+        lower, upper = box(medium)
         for name, end, corner, good in (
-            ("lower", medium.lower, self.lower, medium.lower >= self.lower),
-            ("upper", medium.upper, self.upper, medium.upper <= self.upper),
+            ("lower", lower, self.lower, lower >= self.lower),
+            ("upper", upper, self.upper, upper <= self.upper),
         ):
             require(
                 f"{name} of the medium",

@@ -15,18 +15,12 @@ import numpy as np
 from fogproof.contracts import Draw, Draws
 from fogproof.domains import Interval
 from fogproof.errors import InvalidValueError, UnsupportedError
-from fogproof.estimators.tracking.medium_data import box, look_ups
+from fogproof.estimators.media import ROOM
+from fogproof.estimators.tracking.medium_data import look_ups
 from fogproof.estimators.tracking.tracked import clip_to_box, single
-from fogproof.scene import (
-    AnyMedium,
-    ExponentialMedium,
-    LinearMedium,
-    Medium,
-    PiecewiseConstantMedium,
-    Procedural,
-    Ray,
-    VoxelGrid,
-)
+from fogproof.scene import AnyMedium, Ray
+from fogproof.scene.kinds import given
+from fogproof.scene.media import box
 from fogproof.validate import number
 
 Rule = Literal["midpoint", "right"]
@@ -39,21 +33,11 @@ def feature_size(medium: AnyMedium, ray: Ray) -> float:
     A grid of voxels h holds frequencies up to 1 / (2 h) on each axis, so |w| / h summed over the axes is what the direction w
     sees of them. An exponential is taken by its scale height, layers by the thinnest of them.
     """
-    w = np.abs(ray.direction)
-    with np.errstate(divide="ignore"):
-        match medium:
-            case Medium() | LinearMedium():
-                return np.inf
-            case ExponentialMedium():
-                return float(1 / np.abs(medium.rate @ ray.direction).max())
-            case PiecewiseConstantMedium():
-                return float(np.diff(medium.boundaries).min() / np.abs(medium.axis @ ray.direction))
-            case VoxelGrid():
-                size = (medium.upper - medium.lower) / medium.sigma_t.shape[:3]
-                return float(1 / np.sum(w / size))
-            case Procedural():
-                return medium.detail
-    raise UnsupportedError(f"no step is known for a {type(medium).__name__}: give one", "step")
+    own = given(medium, ROOM, "feature_size")
+    if own is None:
+        raise UnsupportedError(f"no step is known for a {type(medium).__name__}: give one", "step")
+    size: float = own(medium, ray)
+    return size
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +59,7 @@ class RayMarch:
             raise InvalidValueError("rule", f"must be one of {', '.join(get_args(Rule))}", self.rule)
         if self.step is not None:
             number("step", self.step, "must be finite and > 0 [m]", 0, open_ends=True)
-        elif isinstance(self.medium, Procedural) and np.isinf(self.medium.detail):
+        elif np.isinf(getattr(self.medium, "detail", 0.0)):
             raise InvalidValueError("step", "must be given if the medium does not state its detail", None)
 
     @cached_property

@@ -9,17 +9,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from fogproof.contracts import Draw, Draws
 from fogproof.domains import HalfLine, Interval
 from fogproof.errors import UnsupportedError
-from fogproof.estimators.kernels.data import Lattice
+from fogproof.estimators.media import ROOM
 from fogproof.estimators.tracking.medium_data import grey_medium, look_ups
 from fogproof.estimators.tracking.tracked import single
 from fogproof.scene import AnyMedium, Ray, VoxelGrid
+from fogproof.scene.kinds import given
 
 
 class Walks(NamedTuple):
@@ -43,24 +44,21 @@ def regular_tracking(grid: VoxelGrid, rays: Ray, depth: np.ndarray | float = np.
 
     The optical depth is exact but for rounding, about an EPS of it for each cell.
     """
-    from fogproof.estimators.kernels.regular import through_constant_cells, through_trilinear_cells
-
-    _require_grid(grid)
+    walk = _walk_of(grid)
     origin, direction = (np.array(a.reshape(-1, 3), order="C") for a in (rays.origin, rays.direction))
     length = np.array(rays.length.reshape(-1))
     depth = np.array(np.broadcast_to(depth, length.shape) if np.ndim(depth) == 0 else depth, dtype=np.float64)
     walks = Walks(*(np.empty(depth.shape) for _ in range(3)))
-    shape = grid.sigma_t.shape[:3]
-    trilinear = grid.interpolation == "trilinear"
-    lattice = Lattice.between(grid.lower, grid.upper, shape, 0.5 if trilinear else 0.0)
-    kernel = through_trilinear_cells if trilinear else through_constant_cells
-    kernel(grid.sigma_t.reshape(*shape, -1), channel, lattice, origin, direction, length, depth, *walks)
+    walk(grid, origin, direction, length, depth, channel, *walks)
     return walks
 
 
-def _require_grid(medium: AnyMedium) -> None:
-    if not isinstance(medium, VoxelGrid):
+def _walk_of(medium: AnyMedium) -> Any:
+    """Return the walk through the cells of a medium, or say that it has none."""
+    walk = given(medium, ROOM, "walk")
+    if walk is None:
         raise UnsupportedError(f"regular tracking needs a VoxelGrid, got {type(medium).__name__}", "medium")
+    return walk
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +70,7 @@ class RegularTransmittance:
 
     def draw(self, rng: np.random.Generator, n: int) -> Draws:
         """Return n times the same value, (n,) or (n, channels), at the cost of the cells met."""
-        _require_grid(self.medium)
+        _walk_of(self.medium)
         walks = [regular_tracking(self.medium, single(self.ray), channel=c) for c in range(self.medium.channels or 1)]
         value = np.exp(-np.array([walk.tau[0] for walk in walks]))
         value = value if self.medium.channels else value[0]
@@ -91,7 +89,7 @@ class RegularFreePath:
     dimensions: ClassVar[int] = 1
 
     def __post_init__(self) -> None:
-        _require_grid(self.medium)
+        _walk_of(self.medium)
         grey_medium(self.medium)
         single(self.ray)
 

@@ -7,10 +7,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fogproof.errors import InvalidValueError, UnsupportedError
-from fogproof.estimators.kernels.data import BlockBound, ChromaticFieldData, FieldData, Lattice, RayBound
+from fogproof.estimators.kernels.data import BlockBound, Lattice, RayBound
 from fogproof.estimators.tracking.majorant_grid import MajorantGrid
-from fogproof.estimators.tracking.medium_data import Field, box, extremes, look_ups, medium_data
-from fogproof.scene import AnyMedium, Procedural, Ray
+from fogproof.estimators.tracking.medium_data import Field, bounded, extremes, look_ups, medium_data
+from fogproof.scene import AnyMedium, Ray
+from fogproof.scene.media import box
 from fogproof.validate import number, require
 
 PROBES = 64
@@ -55,7 +56,9 @@ def track(medium: AnyMedium, ray: Ray, majorant: float | MajorantGrid | None = N
     origin, direction = (np.array(a.reshape(-1, 3), order="C") for a in (ray.origin, ray.direction))
     length = np.array(ray.length.reshape(-1))
     data, field, channels = medium_data(medium), look_ups(medium), medium.channels or 1
-    low, high = extremes(medium, origin, direction, length)
+    low, high = (
+        extremes(medium, origin, direction, length) if majorant is None or bounded(medium) else _unbounded(length)
+    )
     lower, upper = box(medium)
     if isinstance(majorant, MajorantGrid):
         majorant.require_around(medium)
@@ -67,7 +70,7 @@ def track(medium: AnyMedium, ray: Ray, majorant: float | MajorantGrid | None = N
         value = number("majorant", majorant, "must be finite and > 0 [1/m]", 0, open_ends=True)
         high = np.full_like(high, value)
         low = np.minimum(low, high)
-    elif isinstance(medium, Procedural) and medium.majorant == 0:
+    elif getattr(medium, "majorant", None) == 0:
         raise InvalidValueError("majorant", "must be > 0 [1/m]: with 0 nobody would ever look at the medium", 0.0)
     require("majorant", high, np.isfinite(high), "must be finite [1/m]", "the extinction overflows: shorten the ray")
     if control in ("low", "middle"):
@@ -78,16 +81,21 @@ def track(medium: AnyMedium, ray: Ray, majorant: float | MajorantGrid | None = N
     bound: Any = _bound(majorant, control, residual, lower, upper)
     found = Tracked(data, field, channels, bound, origin, direction, length)
     require_fewer_look_ups(found, medium, MOST_STEPS)
-    if majorant is not None or isinstance(medium, Procedural):
+    if majorant is not None or hasattr(medium, "majorant"):
         _probe(found, medium, majorant, high)
     return found
+
+
+def _unbounded(length: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return bounds of what is bounded by whoever gives a majorant."""
+    return np.zeros_like(length), np.full_like(length, np.inf)
 
 
 def run(kernel: Any, tracked: Tracked, rng: np.random.Generator, *results: np.ndarray) -> None:
     """Run a tracking kernel, and raise if it met an extinction that its bound does not allow."""
     from fogproof.estimators.kernels.compiling import uncached
 
-    if isinstance(tracked.data, (FieldData, ChromaticFieldData)):
+    if getattr(tracked.data, "of_user", False):
         kernel = uncached(kernel)
     rays = (tracked.origin, tracked.direction, tracked.length)
     refuse(*kernel(rng, tracked.data, tracked.bound, *rays, *results))

@@ -58,8 +58,8 @@ NAN = float("nan")
 @pytest.mark.parametrize(
     "call",
     [
-        lambda: Reference(NAN),
-        lambda: Reference(0.5, NAN),
+        lambda: check_estimator(uniform, Reference(NAN), samples=1000),
+        lambda: check_estimator(uniform, Reference(0.5, NAN), samples=1000),
         lambda: Reference(0.5, -1e-9),
         lambda: Reference("0.5"),
         lambda: check_estimator(uniform, NAN, samples=1000),

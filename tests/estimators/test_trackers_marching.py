@@ -15,7 +15,7 @@ from fogproof.analytic import (
 )
 from fogproof.errors import FogproofError
 from fogproof.estimators import MarchedFreePath, MarchedTransmittance, RayMarch, feature_size
-from fogproof.scene import AnisotropicMedium, ExponentialMedium, LinearMedium, Medium, Procedural, Ray, VoxelGrid
+from fogproof.scene import ExponentialMedium, LinearMedium, Medium, OpenGLFog, Procedural, Ray, VoxelGrid
 
 UP = Ray((0, 0, 0), (0, 0, 1), 2.0)
 
@@ -129,7 +129,7 @@ BAD = {
     "too many steps": (lambda: RayMarch(MEDIA["linear"], UP, 1e-12).depths, "steps"),
     "unknown rule": (lambda: RayMarch(MEDIA["linear"], UP, 0.1, "left"), "rule"),
     "infinite ray": (lambda: RayMarch(MEDIA["linear"], Ray((0, 0, 0), (0, 0, 1)), 0.1).depths, "length"),
-    "unknown medium": (lambda: feature_size(AnisotropicMedium(1.0, np.eye(3)), UP), "AnisotropicMedium"),
+    "unknown medium": (lambda: feature_size(OpenGLFog("exp2"), UP), "OpenGLFog"),
     "channels": (lambda: MarchedFreePath(Medium((1.0, 2.0), 0.0), UP), "channels"),
     "free path without end": (lambda: MarchedFreePath(voxels(), Ray((0, 0, 0), (0, 0, 1))), "length"),
 }

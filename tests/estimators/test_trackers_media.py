@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
+
 import numba
 import numpy as np
 import pytest
@@ -12,13 +14,24 @@ from tracker_media import MEDIA, OBLIQUE, unit, voxels, waves
 from fogproof.analytic import (
     coefficients,
     optical_thickness,
+    transmittance,
 )
+from fogproof.checks import check_estimator
 from fogproof.errors import InvalidValueError, UnsupportedError
-from fogproof.estimators import CompiledField, FractalNoise, MajorantGrid
+from fogproof.estimators import CompiledField, DeltaTransmittance, FractalNoise, MajorantGrid, RatioTransmittance
 from fogproof.estimators.tracking.medium_data import extremes, look_ups, medium_data
 from fogproof.estimators.tracking.noise import HIGHEST
 from fogproof.estimators.tracking.optical_depth import optical_depth, path_density
-from fogproof.scene import AnisotropicMedium, ExponentialMedium, LinearMedium, Procedural, Ray, VoxelGrid
+from fogproof.scene import (
+    AnisotropicMedium,
+    ExponentialMedium,
+    Isotropic,
+    LinearMedium,
+    OpenGLFog,
+    Procedural,
+    Ray,
+    VoxelGrid,
+)
 
 CHROMATIC = {
     "linear": LinearMedium((0.5, 0.2), ((0.1, 0.2, 0.3), (0.0, -0.1, 0.1))),
@@ -156,6 +169,33 @@ def test_bad_media_are_refused_with_a_reason(name: str) -> None:
         make()
 
 
+@dataclass(frozen=True)
+class Unheard:
+    """A medium that has no module anywhere."""
+
+    channels: None = None
+    albedo: float = 0.0
+    phase: Isotropic = field(default_factory=Isotropic)
+    emission: float = 0.0
+
+
 def test_what_trackers_do_not_know_is_said() -> None:
-    with pytest.raises(UnsupportedError, match="AnisotropicMedium"):
-        medium_data(AnisotropicMedium(1.0, np.eye(3)))
+    with pytest.raises(UnsupportedError, match="Unheard"):
+        medium_data(Unheard())
+    with pytest.raises(InvalidValueError, match="majorant must be finite"):  # it ends in infinite extinction
+        RatioTransmittance(OpenGLFog("linear"), Ray((0, 0, 0), (0, 0, 1), 1.5)).draw(rng, 1)
+
+
+def test_flakes_are_tracked_by_the_direction() -> None:
+    flakes, w = AnisotropicMedium(2.0, np.diag([1.0, 0.25, 4.0])), unit(1, 2, 3)
+    ray = Ray((0, 0, 0), w, 0.7)
+    loose = DeltaTransmittance(flakes, ray, 9.0)
+    check_estimator(loose.draw, transmittance(flakes, ray), samples=200_000).raise_unless_passed()
+    assert np.allclose(optical_depth(flakes, ray, np.array([0.7])), optical_thickness(flakes, ray).value)
+
+
+@pytest.mark.parametrize("mode", ["exp", "exp2", "linear"])
+def test_fog_of_opengl_is_tracked(mode) -> None:
+    fog, ray = OpenGLFog(mode, 0.8, 0.2, 2.0), Ray((0, 0, 0), unit(1, 2, 3), 1.1)
+    ratio = RatioTransmittance(fog, ray)
+    check_estimator(ratio.draw, transmittance(fog, ray), samples=200_000).raise_unless_passed()

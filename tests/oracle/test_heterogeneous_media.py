@@ -309,9 +309,42 @@ def test_free_path_inverts_thickness(medium):
     assert (free_path(medium, Ray(np.zeros(3), w, s), 0.0).value == 0).all()
 
 
-def test_free_path_refuses_what_it_cannot_do():
-    with pytest.raises(UnsupportedError, match="VoxelGrid"):
-        free_path(VoxelGrid(np.ones((2, 2, 2)), (0, 0, 0), (1, 1, 1)), Ray((0, 0, 0), (0, 0, 1)), 1.0)
+BRACKETED = {
+    "layers": (PiecewiseConstantMedium([-1, 0.2, 1, 4], [1.0, 0.0, 3.0]), 1e-14),
+    "nearest": (VoxelGrid(np.arange(8.0).reshape(2, 2, 2), (-1, -1, -1), (1, 1, 5), "nearest"), 1e-14),
+    "trilinear": (VoxelGrid(np.arange(1.0, 9.0).reshape(2, 2, 2), (-1, -1, -1), (1, 1, 5)), 1e-13),
+    "anisotropic": (AnisotropicMedium(1.0, np.diag([1.0, 0.2, 3.0])), 1e-14),
+    "procedural": (Procedural(lambda x: 1 + np.sin(x[..., 2]), majorant=2.0, detail=1.0), 1e-11),
+}
+
+
+@pytest.mark.parametrize("name", BRACKETED)
+def test_free_path_without_a_closed_form_is_enclosed(name):
+    medium, tight = BRACKETED[name]
+    direction = np.array([0.1, 0.2, np.sqrt(0.95)])
+    for t in (0.15, 1.1, 2.9):
+        tau = optical_thickness(medium, Ray((0, 0, 0), direction, t))
+        found = free_path(medium, Ray((0, 0, 0), direction, 3.5), tau.value)
+        # In vacuum a thickness has many places; the first one counts, which the thickness there tells.
+        again = optical_thickness(medium, Ray((0, 0, 0), direction, float(found.value)))
+        assert found.value <= t + found.error + 1e-15
+        assert abs(again.value - tau.value) <= 9.0 * found.error + tau.error + again.error
+        assert found.error <= tight * t
+    longer = optical_thickness(medium, Ray((0, 0, 0), direction, 3.5)).value * 1.01
+    assert free_path(medium, Ray((0, 0, 0), direction, 3.5), longer).value == np.inf
+    assert free_path(medium, Ray((0, 0, 0), direction, 3.5), 0.0).value == 0
+
+
+def test_free_path_of_an_endless_ray_is_searched_for():
+    flakes = AnisotropicMedium(1e-4, np.eye(3))
+    found = free_path(flakes, Ray((0, 0, 0), (0, 0, 1)), 5.0)
+    assert abs(found.value - 5e4) <= found.error <= 1e-10
+    layers = PiecewiseConstantMedium([0, 1, 2], [1.0, 2.0])
+    assert free_path(layers, Ray((0, 0, 0), (0, 0, 1)), 3.5).value == np.inf
+    assert abs(free_path(layers, Ray((0, 0, 0), (0, 0, 1)), 2.0).value - 1.5) <= 1e-15
+
+
+def test_free_path_refuses_a_negative_thickness():
     with pytest.raises(InvalidValueError, match="tau"):
         free_path(Medium(1.0, 0.0), Ray((0, 0, 0), (0, 0, 1)), -1.0)
 

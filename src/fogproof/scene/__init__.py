@@ -1,15 +1,18 @@
 """Scenes as plain frozen data that validate themselves. No formula lives here."""
 
-from fogproof.scene.graded_media import (
+from fogproof.scene.lights import DirectionalLight, Environment, Light, PointLight, SpotLight
+from fogproof.scene.media import (
     AnisotropicMedium,
+    AnyMedium,
     ExponentialMedium,
     LinearMedium,
+    Medium,
+    OpenGLFog,
     PiecewiseConstantMedium,
+    Procedural,
+    VoxelGrid,
 )
-from fogproof.scene.lights import DirectionalLight, Environment, Light, PointLight, SpotLight
-from fogproof.scene.media import AnyMedium, Medium
 from fogproof.scene.occluders import Disk, Occluder, Sphere
-from fogproof.scene.opengl_fog import OpenGLFog
 from fogproof.scene.phase import (
     CornetteShanks,
     DoubleHenyeyGreenstein,
@@ -27,11 +30,9 @@ from fogproof.scene.phase import (
     Tabulated,
     VaryingPhase,
 )
-from fogproof.scene.procedural import Procedural
 from fogproof.scene.rays import Ray
 from fogproof.scene.scenes import Scattering, Scene
 from fogproof.scene.shapes import Ball, Box, HalfSpace, Shape, Slab, Unbounded
-from fogproof.scene.voxel_grid import VoxelGrid
 
 __all__ = [
     "AnisotropicMedium",

@@ -35,7 +35,7 @@ from typing import Any
 import numpy as np
 
 from fogproof.errors import InvalidInputError, InvalidValueError, UnsupportedError
-from fogproof.scene.voxel_grid import VoxelGrid
+from fogproof.scene.media.voxel_grid import VoxelGrid
 from fogproof.validate import number
 
 _HEADER = struct.Struct("<3sBi4i6f")

@@ -17,10 +17,10 @@ from fogproof.estimators import FractalNoise
 from fogproof.scene import AnyMedium, Isotropic, Procedural, VoxelGrid
 from fogproof.scene.arrays import FloatArray
 from fogproof.scene.kinds import ByKind
-from fogproof.scene.media import MEDIA
+from fogproof.scene.media import KINDS as MEDIA
+from fogproof.scene.media.voxel_grid import Interpolation
 from fogproof.scene.phase import PhaseFunctionField
 from fogproof.scene.volume_files import read_voxel_grid
-from fogproof.scene.voxel_grid import Interpolation
 from fogproof.validate import number
 
 

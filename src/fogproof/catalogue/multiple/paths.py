@@ -110,6 +110,7 @@ def _by_order(count: int) -> Reference:
     orders, whole = analytic.slab_reflectance_orders(1.0, VIEW, count - 1), analytic.slab_reflectance(0.9, 1.0, VIEW)
     scale = 0.9 ** np.arange(count)
     value, error = orders.value * scale, orders.error * scale
+    value[0] = error[0] = 0.0  # nothing comes back unscattered
     rest = float(whole.value) - value.sum()
     return Reference(
         np.append(value, rest), np.append(error, float(whole.error) + error.sum()), orders.method, orders.source

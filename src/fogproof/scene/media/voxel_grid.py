@@ -7,7 +7,7 @@ from typing import Literal, get_args
 
 from fogproof.errors import InvalidValueError
 from fogproof.scene.arrays import FloatArray
-from fogproof.scene.graded_media import cell_channels, set_cells
+from fogproof.scene.media.common import cell_channels, cells_of_channel, cells_vary, set_cells
 from fogproof.scene.phase import AnyPhaseField, Isotropic, require_any_phase
 from fogproof.validate import as_float_array, points, require
 
@@ -58,3 +58,13 @@ class VoxelGrid:
     def channels(self) -> int | None:
         """How many channels the medium has; None if it is grey."""
         return cell_channels(self, 3)
+
+    @property
+    def sources_vary(self) -> bool:
+        """Whether albedo or emission differ from voxel to voxel."""
+        return cells_vary(self)
+
+    def channel(self, c: int) -> VoxelGrid:
+        """Return the grey medium that channel c sees."""
+        grey: VoxelGrid = cells_of_channel(self, 3, c)
+        return grey

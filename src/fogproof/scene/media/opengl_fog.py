@@ -7,7 +7,7 @@ from typing import Literal, get_args
 
 from fogproof.errors import InvalidValueError
 from fogproof.scene.arrays import FloatArray
-from fogproof.scene.graded_media import albedo_channels
+from fogproof.scene.media.common import albedo_channels
 from fogproof.scene.phase import AnyPhaseField, Isotropic, require_any_phase
 from fogproof.validate import Channels, channel_count, nonnegative_channels, number, points
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from fogproof.errors import InvalidValueError
-from fogproof.scene.graded_media import albedo_channels
+from fogproof.scene.media.common import albedo_channels, channel_of
 from fogproof.scene.phase import AnyPhase, Isotropic, require_any_phase
 from fogproof.validate import Channels, as_float_array, channel_count, nonnegative_channels, number, require
 
@@ -77,3 +77,14 @@ class Procedural:
         declared = (0.0,) * self.channels if self.channels else 0.0
         count = channel_count(sigma_t=declared, **{k: v for k, v in constants.items() if not callable(v)})
         object.__setattr__(self, "channels", count)
+
+    @property
+    def sources_vary(self) -> bool:
+        """Whether albedo or emission is a function of the place."""
+        return callable(self.albedo) or callable(self.emission)
+
+    def channel(self, c: int) -> Procedural:
+        """Return the grey medium that channel c sees."""
+        given = self.sigma_t
+        sources = {name: channel_of(getattr(self, name), c) for name in ("albedo", "emission")}
+        return replace(self, sigma_t=lambda *at: np.asarray(given(*at))[..., c], channels=None, **sources)

@@ -1,22 +1,12 @@
-"""Participating media. Coefficients are in 1/m; a tuple has one value a colour or wavelength channel.
-
-The homogeneous `Medium` is given by sigma_a and sigma_s, the others by sigma_t and the albedo sigma_s / sigma_t. A
-medium fills space; where a kind has bounds, there is vacuum outside. Positions are world coordinates [m].
-"""
+"""The homogeneous medium, given by sigma_a and sigma_s."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Annotated
 
 import numpy as np
 
-from fogproof.scene.graded_media import AnisotropicMedium, ExponentialMedium, LinearMedium, PiecewiseConstantMedium
-from fogproof.scene.kinds import ByKind
-from fogproof.scene.opengl_fog import OpenGLFog
 from fogproof.scene.phase import Isotropic, PhaseFunctionField, require_phase
-from fogproof.scene.procedural import Procedural
-from fogproof.scene.voxel_grid import VoxelGrid
 from fogproof.validate import Channels, channel_count, nonnegative_channels, require
 
 
@@ -65,27 +55,3 @@ class Medium:
         """1 / sigma_t [m], () or (channels,); inf where the medium is empty."""
         sigma_t = self.sigma_t
         return np.divide(1.0, sigma_t, out=np.full_like(sigma_t, np.inf), where=sigma_t > 0)
-
-
-MEDIA: dict[str, type] = {
-    "homogeneous": Medium,
-    "linear": LinearMedium,
-    "exponential": ExponentialMedium,
-    "piecewise-constant": PiecewiseConstantMedium,
-    "anisotropic": AnisotropicMedium,
-    "opengl-fog": OpenGLFog,
-    "voxel-grid": VoxelGrid,
-}
-"""The `kind` of each medium in files and requests; without one a medium is homogeneous."""
-
-AnyMedium = (
-    Medium
-    | LinearMedium
-    | ExponentialMedium
-    | PiecewiseConstantMedium
-    | AnisotropicMedium
-    | OpenGLFog
-    | VoxelGrid
-    | Procedural
-)
-AnyMediumField = Annotated[AnyMedium, ByKind(MEDIA, default="homogeneous")]
