@@ -134,7 +134,7 @@ def _density_table(lobe: Any, x: float, y: float, z: float, mu: float) -> float:
     versine = max(0.0, 1.0 - mu)
     i = cell_of(lobe.versine, versine)
     width = lobe.versine[i + 1] - lobe.versine[i]
-    share = min((versine - lobe.versine[i]) / width, 1.0)
+    share = min((versine - lobe.versine[i]) / width, 1.0) if width > 0.0 else 1.0  # at the very back widths round to 0
     return (1.0 - share) * lobe.left[i] + share * lobe.right[i]
 
 

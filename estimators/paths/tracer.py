@@ -54,8 +54,8 @@ class Roulette:
 class PathTracer:
     """Radiance along one ray [W/(m^2 sr)]; everything grey.
 
-    medium            fills `shape`; albedo and emission the same everywhere, phase function isotropic, Henyey-Greenstein or
-                      Rayleigh. Media with bounds of their own end there as well
+    medium            fills `shape`; albedo and emission the same everywhere, any phase function (one that varies in space by
+                      a `Ramp`). Media with bounds of their own end there as well
     shape             convex, with vacuum outside
     ray               away from the camera, which may be inside; its length is not used
     light             a point or directional light, or an environment; None for none
