@@ -39,7 +39,7 @@ SMOOTH = [
 def test_a_table_has_the_distribution_of_the_phase_function(phase):
     lobe, error = tabulated_lobe(phase)
     assert error <= ENOUGH
-    assert len(lobe.left) < 8000
+    assert len(lobe.left) < 12000
     mu = np.where(lobe.versine < lobe.coversine, 1 - lobe.versine, lobe.coversine - 1)
     right = phase_cdf(phase, np.clip(mu, -1, 1))
     # At an edge the probability is right to rounding, save that mu itself is rounded; and the line keeps every moment to 1e-6.
