@@ -18,12 +18,13 @@ from fogproof.analytic.declaration import quantity
 from fogproof.analytic.multiple.isotropic_modes import isotropic_modes
 from fogproof.analytic.multiple.scattering_arguments import checked_albedo, checked_cosine, checked_length
 from fogproof.analytic.multiple.slab import checked_phase
+from fogproof.analytic.multiple.slab_by_doubling import is_isotropic
 from fogproof.analytic.multiple.slab_directions import Beams, Side, directional
 from fogproof.analytic.multiple.slab_modes import Modes, amplitudes, quadrature, scattered
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError
 from fogproof.scene.arrays import FloatArray
-from fogproof.scene.phase import Isotropic, PhaseFunctionField
+from fogproof.scene.phase import PhaseFunctionField
 from fogproof.validate import as_float_array, require
 
 METHOD = "discrete ordinates"
@@ -95,7 +96,7 @@ def slab_btdf(
 
 def _kernel(albedo: Any, tau: Any, mu0: Any, mu: Any, phase: Any, azimuth: Any, side: Side) -> Reference:
     phase = checked_phase(phase)
-    isotropic = isinstance(phase, Isotropic)
+    isotropic = is_isotropic(phase)
     if azimuth is None and not isotropic:
         raise InvalidValueError("azimuth", "must be given [rad]", azimuth, "only isotropic scattering does without it")
     angle = as_float_array("azimuth", 0.0 if azimuth is None else azimuth)

@@ -60,6 +60,12 @@ def phase_moments(phase: PhaseFunction) -> Moments:
     return Moments(moments.value, np.sqrt(np.cumsum(weight * moments.error**2)))
 
 
+def is_isotropic(phase: PhaseFunction) -> bool:
+    """Return whether all moments of a phase function vanish, exactly, but the first."""
+    moments = phase_moments(phase)
+    return not np.any(moments.chi[1:]) and moments.change[-1] == 0
+
+
 def _first(chi: np.ndarray) -> int:
     """Return the first level worth a solution: the one before that where what is cut off would no longer be seen."""
     seen = [abs(float(chi[MOMENTS * n])) > CUT for n in LEVELS]
