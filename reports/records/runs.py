@@ -171,7 +171,9 @@ def write_csv(run: Run, folder: str | Path) -> Path:
 def _row(case: Case, run: Run) -> dict[str, Any]:
     verdict, resolution = case.verdict, case.verdict.resolution if case.verdict is not None else None
     twin, plan = case.twin_result, case.plan
-    rejecting = [finding.check for finding in verdict.findings if finding.outcome == "rejected"] if verdict is not None else []
+    rejecting = (
+        [finding.check for finding in verdict.findings if finding.outcome == "rejected"] if verdict is not None else []
+    )
     values = {
         "outcome": None if verdict is None else verdict.outcome,
         "p_value": None if verdict is None else verdict.p_value,
