@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from functools import partial
 from itertools import permutations
 
 import numpy as np
 
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting, known_number, of_points
-from fogproof.domains import Box, Rectangle, UnitSquare
 
 _SHIFTS = (-0.1, -0.05, -0.02, -0.01, -0.003, 0.003, 0.01, 0.02, 0.05, 0.1)
 _MOST_SWAPPED = 4  # dimensions
@@ -24,8 +23,12 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
         if order != tuple(range(k)):
             words = f"these samples fit the pdf with its axes taken in the order {', '.join(map(str, order))}"
             yield Hypothesis("swapped axes", words, of_points(partial(np.take, indices=order, axis=1)))
-    if isinstance(domain, (Box, Rectangle, UnitSquare)):
-        yield from _in_a_box(getattr(domain, "low", (0.0, 0.0)), getattr(domain, "high", (1.0, 1.0)))
+    low, high = setting.law.place(np.stack([np.zeros(k), np.ones(k)])) if len(setting.law.axes) == k else (None, None)
+    if low is not None and np.isclose(
+        np.prod(high - low), domain.measure
+    ):  # a box: it fills the space between its corners
+        for axis in range(k):
+            yield from _along(axis, float(low[axis]), float(high[axis]))
     else:
         yield Hypothesis("sign convention", "these samples fit the pdf of -x", lambda s, _: lambda x: s.p(-x))
     yield Hypothesis(
@@ -41,12 +44,6 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
             }
         ),
     )
-
-
-def _in_a_box(lower: Sequence[float], upper: Sequence[float]) -> Iterator[Hypothesis]:
-    low, high = np.asarray(lower, dtype=float), np.asarray(upper, dtype=float)
-    for axis in range(len(low)):
-        yield from _along(axis, float(low[axis]), float(high[axis]))
 
 
 def _along(axis: int, low: float, high: float) -> Iterator[Hypothesis]:
