@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -35,6 +35,38 @@ class Lobe(NamedTuple):
 
     kind: int
     g: float
+
+
+class TableLobe(NamedTuple):
+    """A phase function that is linear in n cells of the versine v = 1 - mu, with jumps between them where they serve.
+
+    versine      (n + 1,) edges of the cells, from 0 to 2, and
+    coversine    (n + 1,) 1 + mu there, with digits of its own
+    cdf          (n + 1,) probability below each edge, from 0 to 1
+    left, right  (n,) density at the ends of the cells [1/sr]; a cell's probability is pi times its width times their sum
+    """
+
+    versine: np.ndarray
+    coversine: np.ndarray
+    cdf: np.ndarray
+    left: np.ndarray
+    right: np.ndarray
+
+
+class BlendLobe(NamedTuple):
+    """Two phase functions; the share of the second is (x - start) . way, cut to [0, 1]."""
+
+    first: Any
+    second: Any
+    start_x: float
+    start_y: float
+    start_z: float
+    way_x: float
+    way_y: float
+    way_z: float
+
+
+AnyLobe = Lobe | TableLobe | BlendLobe
 
 
 DARK, POINT, PARALLEL, SKY = range(4)

@@ -14,7 +14,7 @@ import numpy as np
 
 from fogproof.estimators.kernels.compiling import inlined, kernel
 from fogproof.estimators.kernels.flights import fly, shine
-from fogproof.estimators.kernels.path_data import DARK, MIRROR, PARALLEL, POINT, SKY, Lamp, Lobe, Plan, Region, Wall
+from fogproof.estimators.kernels.path_data import DARK, MIRROR, PARALLEL, POINT, SKY, Lamp, Plan, Region, Wall
 from fogproof.estimators.kernels.regions import crossing, outward, reach, wall_normal
 from fogproof.estimators.kernels.scattering import (
     diffuse,
@@ -56,7 +56,7 @@ def trace(
     medium: Any,
     bound: Any,
     region: Region,
-    lobe: Lobe,
+    lobe: Any,
     lamp: Lamp,
     wall: Wall,
     plan: Plan,
@@ -165,7 +165,7 @@ def trace(
             if plan.look and lamp.kind != DARK:
                 wx, wy, wz, distance, arriving = towards(rng, lamp, x, y, z)
                 along_n, along_d = wx * nx + wy * ny + wz * nz, wx * dx + wy * dy + wz * dz
-                density = phase_density(lobe, along_d) if hit else max(0.0, along_n) / np.pi
+                density = phase_density(lobe, x, y, z, along_d) if hit else max(0.0, along_n) / np.pi
                 if density > 0.0 and reach(wall, x, y, z, wx, wy, wz, on_wall) >= distance:
                     enter, leave = crossing(region, x, y, z, wx, wy, wz)
                     start, stop = max(enter, 0.0), min(leave, distance)
@@ -181,8 +181,8 @@ def trace(
                     value[i, min(order, last)] += throughput * weight * arriving * through
             if hit:
                 ox, oy, oz = dx, dy, dz
-                dx, dy, dz = scattered(rng, lobe, dx, dy, dz)
-                density = phase_density(lobe, dx * ox + dy * oy + dz * oz)
+                dx, dy, dz = scattered(rng, lobe, x, y, z, dx, dy, dz)
+                density = phase_density(lobe, x, y, z, dx * ox + dy * oy + dz * oz)
             else:
                 dx, dy, dz = diffuse(rng, nx, ny, nz)
                 density = (dx * nx + dy * ny + dz * nz) / np.pi

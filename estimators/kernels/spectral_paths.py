@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from fogproof.estimators.kernels.compiling import inlined, kernel
-from fogproof.estimators.kernels.path_data import DARK, MIRROR, SKY, Lamp, Lobe, Plan, Region, Wall
+from fogproof.estimators.kernels.path_data import DARK, MIRROR, SKY, Lamp, Plan, Region, Wall
 from fogproof.estimators.kernels.paths import UNIFORM, shared, towards
 from fogproof.estimators.kernels.regions import crossing, reach, wall_normal
 from fogproof.estimators.kernels.scattering import diffuse, phase_density, reflected, scattered
@@ -41,7 +41,7 @@ def trace_in_colour(
     medium: Any,
     bound: Any,
     region: Region,
-    lobe: Lobe,
+    lobe: Any,
     lamp: Lamp,
     wall: Wall,
     plan: Plan,
@@ -125,7 +125,7 @@ def trace_in_colour(
             if plan.look and lamp.kind != DARK:
                 wx, wy, wz, distance, arriving = towards(rng, lamp, x, y, z)
                 along_n, along_d = wx * nx + wy * ny + wz * nz, wx * dx + wy * dy + wz * dz
-                p = phase_density(lobe, along_d) if hit else max(0.0, along_n) / np.pi
+                p = phase_density(lobe, x, y, z, along_d) if hit else max(0.0, along_n) / np.pi
                 if p > 0.0 and reach(wall, x, y, z, wx, wy, wz, on_wall) >= distance:
                     enter, leave = crossing(region, x, y, z, wx, wy, wz)
                     start, stop = max(enter, 0.0), min(leave, distance)
@@ -140,8 +140,8 @@ def trace_in_colour(
                     gather(value[i], density, carried, colour, through, p * arriving * shared(lamp, plan, p))
             if hit:
                 ox, oy, oz = dx, dy, dz
-                dx, dy, dz = scattered(rng, lobe, dx, dy, dz)
-                p = phase_density(lobe, dx * ox + dy * oy + dz * oz)
+                dx, dy, dz = scattered(rng, lobe, x, y, z, dx, dy, dz)
+                p = phase_density(lobe, x, y, z, dx * ox + dy * oy + dz * oz)
             else:
                 dx, dy, dz = diffuse(rng, nx, ny, nz)
                 p = (dx * nx + dy * ny + dz * nz) / np.pi

@@ -14,6 +14,7 @@ from fogproof.estimators.kernels.path_data import Plan
 from fogproof.estimators.media import ROOM
 from fogproof.estimators.paths import data as path_data
 from fogproof.estimators.paths.tracer import ENDLESS, trace, whole
+from fogproof.estimators.phase.functions import kernel_lobe
 from fogproof.estimators.tracking.majorant_grid import MajorantGrid
 from fogproof.scene import AnyMedium, Isotropic, PhaseFunction
 from fogproof.scene.kinds import given
@@ -36,7 +37,7 @@ class RandomFlights:
         from fogproof.estimators.kernels.walks import displacements
 
         moved = np.empty((n, 3))
-        displacements(rng, path_data.lobe(self.phase), self.flights, moved)
+        displacements(rng, kernel_lobe(self.phase), self.flights, moved)
         return Draws(np.stack([moved[:, 2], np.sum(moved * moved, axis=1)], axis=1), np.full(n, float(self.flights)))
 
 
@@ -62,7 +63,7 @@ class PointSourceWalks:
         from fogproof.estimators.kernels.walks import collisions_within
 
         count = np.empty((n, len(self.radii)))
-        collisions_within(rng, path_data.lobe(self.phase), self.albedo, np.array(self.radii, dtype=float), count)
+        collisions_within(rng, kernel_lobe(self.phase), self.albedo, np.array(self.radii, dtype=float), count)
         return Draws(count)
 
 
@@ -112,7 +113,7 @@ class ScatteringsUnderUniformSky:
         scattering = given(self.medium, ROOM, "without_absorption")
         medium = self.medium if scattering is None else scattering(self.medium)
         data, bound = path_data.medium_and_bound(medium, self.shape, self.majorant)
-        lobe = path_data.lobe(self.medium.phase)
+        lobe = kernel_lobe(self.medium.phase)
         return data, bound, path_data.region(self.shape), lobe, path_data.lamp(None), path_data.wall(None), plan
 
     def draw(self, rng: np.random.Generator, n: int) -> Draws:

@@ -13,6 +13,7 @@ from fogproof.errors import UnsupportedError
 from fogproof.estimators.kernels.path_data import Plan
 from fogproof.estimators.paths import data as path_data
 from fogproof.estimators.paths.tracer import ENDLESS, Gathering, Paths, Roulette, choose_gathering, run
+from fogproof.estimators.phase.functions import kernel_lobe
 from fogproof.estimators.tracking.majorant_grid import MajorantGrid
 from fogproof.estimators.tracking.tracked import single
 from fogproof.scene import AnyMedium, Ray
@@ -59,7 +60,7 @@ class SpectralPathTracer:
         roulette, deepest = self.roulette or Roulette(ENDLESS, 1.0), ENDLESS if self.deepest is None else self.deepest
         look, meet = how != "met", how != "looked for"
         plan = Plan(1.0, 0.0, 1.0, look, meet, deepest, -1.0, roulette.start, roulette.survival, self.events)
-        lobe, wall = path_data.lobe(self.medium.phase), path_data.wall(self.surface)
+        lobe, wall = kernel_lobe(self.medium.phase), path_data.wall(self.surface)
         albedo, emission = (self._constant(name) for name in ("albedo", "emission"))
         colour = np.array(np.broadcast_to(0.0 if self.light is None else strength(self.light), self.channels))
         lamp = path_data.lamp(None if self.light is None else with_strength(self.light, 1.0))

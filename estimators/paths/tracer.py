@@ -17,6 +17,7 @@ from fogproof.errors import InvalidValueError, UnsupportedError
 from fogproof.estimators.free_paths.fog import everywhere
 from fogproof.estimators.kernels.path_data import Plan
 from fogproof.estimators.paths import data as path_data
+from fogproof.estimators.phase.functions import kernel_lobe
 from fogproof.estimators.tracking.majorant_grid import MajorantGrid
 from fogproof.estimators.tracking.tracked import refuse, single
 from fogproof.scene import AnyMedium, Ray
@@ -67,8 +68,8 @@ class Paths(NamedTuple):
 class PathTracer:
     """Radiance along one ray [W/(m^2 sr)]; everything grey.
 
-    medium            fills `shape`; albedo and emission the same everywhere, phase function isotropic, Henyey-Greenstein or
-                      Rayleigh. Media with bounds of their own end there as well
+    medium            fills `shape`; albedo and emission the same everywhere, any phase function (one that varies in space by
+                      a `Ramp`). Media with bounds of their own end there as well
     shape             convex, with vacuum outside
     ray               away from the camera, which may be inside; its length is not used
     light             a point or directional light, or an environment; None for none
@@ -129,7 +130,7 @@ class PathTracer:
             self.events,
         )
         medium, bound = path_data.medium_and_bound(self.medium, self.shape, self.majorant)
-        lobe, lamp, wall = path_data.lobe(self.medium.phase), path_data.lamp(self.light), path_data.wall(self.surface)
+        lobe, lamp, wall = kernel_lobe(self.medium.phase), path_data.lamp(self.light), path_data.wall(self.surface)
         return medium, bound, path_data.region(self.shape), lobe, lamp, wall, plan
 
     def paths(self, rng: np.random.Generator, n: int) -> Paths:

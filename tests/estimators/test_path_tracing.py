@@ -43,6 +43,7 @@ from fogproof.scene import (
     Procedural,
     Ray,
     Rayleigh,
+    VaryingPhase,
     VoxelGrid,
 )
 from fogproof.scene.lights import DirectionalLight, Environment, PointLight, SpotLight
@@ -57,6 +58,7 @@ SLAB, BALL = Slab((0, 0, 0), UP, 1.0), Ball((0, 0, 0), 1.0)
 BOX = Box((-1, -1, -1), (1, 1, 1))
 SKY, BLACK = Environment(1.0), Surface(Plane((0, 0, -2), UP))
 FOG = Medium(0.1, 0.9)
+UNKNOWN = VaryingPhase(Hazy(), Rayleigh(), lambda x: 0.5 + 0 * x[..., 0])
 ABOVE, ASIDE = Ray((0, 0, 3), (np.sqrt(0.75), 0, -0.5)), Ray((0.3, 0, 3), (0, 0, -1))
 ONE = Reference(np.asarray(1.0), np.asarray(0.0), "", "")
 
@@ -539,7 +541,7 @@ def test_bad_arguments_are_named(make, error, words):
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (lambda: PathTracer(Medium(0.1, 0.9, Hazy()), BALL, ASIDE, SKY), "Hazy"),
+        (lambda: PathTracer(LinearMedium(1.0, (0, 0, 0), phase=UNKNOWN), BALL, ASIDE, SKY), "share .* Ramp"),
         (lambda: PathTracer(FOG, BALL, ASIDE, SpotLight((0, 2, 0), (0, -1, 0), 1.0, 0.5)), "SpotLight"),
         (lambda: PathTracer(COLOURS, BALL, ASIDE, SKY), "channels"),
         (lambda: PathTracer(LinearMedium(1.0, (1, 0, 0)), SLAB, ABOVE, SKY), "bounded"),

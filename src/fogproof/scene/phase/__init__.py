@@ -15,7 +15,9 @@ from fogproof.scene.phase.isotropic import Isotropic
 from fogproof.scene.phase.mie import Mie
 from fogproof.scene.phase.mixture import Mixture
 from fogproof.scene.phase.murky import Murky
-from fogproof.scene.phase.phase_function import PhaseFunction, PhaseFunctionField, require_phase
+from fogproof.scene.phase.phase_function import PhaseFunction
+from fogproof.scene.phase.phase_function import PhaseFunctionField as PhaseFunctionField
+from fogproof.scene.phase.phase_function import require_phase as require_phase
 from fogproof.scene.phase.rayleigh import Rayleigh
 from fogproof.scene.phase.schlick import Schlick
 from fogproof.scene.phase.tabulated import Tabulated
@@ -54,9 +56,6 @@ def constant_phase(phase: AnyPhase) -> PhaseFunction | None:
 
 
 __all__ = [
-    "KINDS",
-    "AnyPhase",
-    "AnyPhaseField",
     "CornetteShanks",
     "DoubleHenyeyGreenstein",
     "Draine",
@@ -67,13 +66,9 @@ __all__ = [
     "Mixture",
     "Murky",
     "PhaseFunction",
-    "PhaseFunctionField",
     "Ramp",
     "Rayleigh",
     "Schlick",
     "Tabulated",
     "VaryingPhase",
-    "constant_phase",
-    "require_any_phase",
-    "require_phase",
 ]
