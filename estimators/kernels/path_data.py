@@ -1,4 +1,8 @@
-"""What the path tracer works on: plain numbers, whose `kind` says what they mean. One kernel then serves all of them."""
+"""What the path tracer works on: plain numbers, whose `kind` says what they mean. One kernel then serves all of them.
+
+The kernels have words of their own for these numbers, so that nobody takes them for the classes of the scene, which have names and
+check themselves: a *region* is a shape that holds a medium, a *lobe* a phase function, a *lamp* a light, a *wall* a surface.
+"""
 
 from __future__ import annotations
 
@@ -109,14 +113,14 @@ class Wall(NamedTuple):
     radiance: float
 
 
-class Plan(NamedTuple):
+class PathRules(NamedTuple):
     """How paths are followed.
 
     albedo    sigma_s / sigma_t of the medium
     emission  L_e of the medium [W/(m^2 sr)]
     eta       refractive index of the medium, 1 if its boundary does not reflect
-    look      whether a collision looks for the light
-    meet      whether light that a scattered path meets by itself counts; with both, each by its share
+    look      whether a collision looks for the light (next-event estimation)
+    meet      whether light that a scattered path meets by itself counts; with both, each by its share (balance heuristic)
     deepest   scattering order at which paths end
     ambient   in-scattered radiance that a collision takes as constant, < 0 if it is followed instead
     roulette  scattering order from which on paths are ended at random
@@ -134,6 +138,46 @@ class Plan(NamedTuple):
     roulette: int
     survival: float
     events: int
+
+
+class PathScene(NamedTuple):
+    """Everything but the ray. The type of the medium chooses code (`kernels.flights`), and so does that of the lobe.
+
+    medium  extinction, see `kernels.data`
+    bound   of the extinction, None where the medium needs none
+    """
+
+    medium: Any
+    bound: Any
+    region: Region
+    lobe: AnyLobe
+    lamp: Lamp
+    wall: Wall
+    rules: PathRules
+
+
+class PathRows(NamedTuple):
+    """One path a row.
+
+    value        (n, columns) radiance [W/(m^2 sr)] by the number of collisions on its way, the last column with all beyond; or by
+                 channel
+    cost         (n,) look-ups of the medium, those of shadow rays included
+    scatterings  (n,) collisions
+    cut          (n,) throughput left in paths that were cut; its mean times the brightest radiance there is bounds the bias
+    """
+
+    value: np.ndarray
+    cost: np.ndarray
+    scatterings: np.ndarray
+    cut: np.ndarray
+
+
+class Colours(NamedTuple):
+    """What differs by channel, (channels,) each: albedo and emission of the medium, strength of the light."""
+
+    albedo: np.ndarray
+    emission: np.ndarray
+    light: np.ndarray
 
 
 class UniformData(NamedTuple):

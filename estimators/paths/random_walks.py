@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
 from fogproof.contracts import Draws
 from fogproof.errors import InvalidValueError, UnsupportedError
-from fogproof.estimators.kernels.path_data import Plan
+from fogproof.estimators.kernels.path_data import PathRules, PathScene
 from fogproof.estimators.media import ROOM
 from fogproof.estimators.paths import data as path_data
 from fogproof.estimators.paths.tracer import ENDLESS, trace, whole
@@ -108,13 +107,14 @@ class ScatteringsUnderUniformSky:
     majorant: float | MajorantGrid | None = None
 
     @cached_property
-    def _scene(self) -> tuple[Any, ...]:
-        plan = Plan(1.0, 0.0, 1.0, False, True, ENDLESS, -1.0, ENDLESS, 1.0, ENDLESS)
+    def _scene(self) -> PathScene:
+        rules = PathRules(1.0, 0.0, 1.0, False, True, ENDLESS, -1.0, ENDLESS, 1.0, ENDLESS)
         scattering = given(self.medium, ROOM, "without_absorption")
         medium = self.medium if scattering is None else scattering(self.medium)
         data, bound = path_data.medium_and_bound(medium, self.shape, self.majorant)
         lobe = kernel_lobe(self.medium.phase)
-        return data, bound, path_data.region(self.shape), lobe, path_data.lamp(None), path_data.wall(None), plan
+        region = path_data.region(self.shape)
+        return PathScene(data, bound, region, lobe, path_data.lamp(None), path_data.wall(None), rules)
 
     def draw(self, rng: np.random.Generator, n: int) -> Draws:
         """Return n realisations of the number of scatterings (n,)."""

@@ -9,6 +9,7 @@ from fogproof.scene.kinds import ByKind
 from fogproof.scene.phase.cornette_shanks import CornetteShanks
 from fogproof.scene.phase.double_henyey_greenstein import DoubleHenyeyGreenstein
 from fogproof.scene.phase.draine import Draine
+from fogproof.scene.phase.fournier_forand import FournierForand
 from fogproof.scene.phase.hazy import Hazy
 from fogproof.scene.phase.henyey_greenstein import HenyeyGreenstein
 from fogproof.scene.phase.isotropic import Isotropic
@@ -33,6 +34,7 @@ KINDS: dict[str, type[PhaseFunction]] = {
     "rayleigh": Rayleigh,
     "cornette-shanks": CornetteShanks,
     "draine": Draine,
+    "fournier-forand": FournierForand,
     "mie": Mie,
     "tabulated": Tabulated,
     "mixture": Mixture,
@@ -59,6 +61,7 @@ __all__ = [
     "CornetteShanks",
     "DoubleHenyeyGreenstein",
     "Draine",
+    "FournierForand",
     "Hazy",
     "HenyeyGreenstein",
     "Isotropic",
