@@ -8,7 +8,7 @@ import pytest
 from fogproof import analytic
 from fogproof.errors import InvalidValueError
 from fogproof.quantities import quantities
-from fogproof.scene import Ray
+from fogproof.scene import Medium, PointLight, Ray
 from fogproof.scene.files import read_fields
 
 SLOW = {"radiance_by_ode": ((0,), (2, 1))}
@@ -86,3 +86,36 @@ def test_a_declared_function_is_still_itself():
     assert function.__doc__.startswith("Return the phase function")
     with pytest.raises(TypeError, match="phase_pdf"):
         function()
+
+
+EXTREMES = [
+    lambda: analytic.sky_colour([1e-44, 5e-324, 0.5, 1e-44], [0.5, 0.5, 1e-44, 1e-44], 0.3),
+    lambda: analytic.plane_parallel_sky(
+        [0.3, 1e300, 0, 0.3], [5e-324, 0.5, 5e-324, 0.5], [5e-324, 5e-324, 1, 5e-324], 0.3
+    ),
+    lambda: analytic.single_scattering_variance(FOG, RAYS, LAMP_FAR, "equiangular"),
+    lambda: analytic.single_scattering_second_moment(FOG, RAYS, LAMP_FAR, "free-path"),
+    lambda: analytic.ambient_fog_variance(FOG, RAYS, 1e150, 3),
+    lambda: analytic.rayleigh_scattering_coefficient(1e-9, 1e247, 1e25, 5e-7),
+    lambda: analytic.mean_square_displacement(2**53, [-1, 0, 0.9], 1.0),
+]
+FOG = Medium(0.1, 0.4)
+RAYS = Ray((0, 0, 0), (0, 0, 1), [1, 1e154, np.inf])
+LAMP_FAR = PointLight((1e154, 0, 0), 3)
+
+
+@pytest.mark.parametrize("ask", EXTREMES, ids=range(len(EXTREMES)))
+def test_at_the_ends_of_float64_there_is_a_limit_and_no_nan(ask):
+    found = ask()
+    assert not np.isnan(found.value).any()
+    assert np.isfinite(found.error).all()
+
+
+def test_a_view_along_the_horizon_sees_the_sunlit_air():
+    """mu_view -> 0: the optical path is endless, and L -> f_p(mu) exp(-tau/mu_sun)."""
+    sky = analytic.plane_parallel_sky(0.3, 0.5, [1e-9, 1e-44, 5e-324], 0.0)
+    mu = np.sqrt(0.75)
+    limit = 3 / (16 * np.pi) * (1 + mu * mu) * np.exp(-0.6)
+    np.testing.assert_allclose(sky.value, limit, rtol=1e-8)
+    assert np.all(np.abs(sky.value[1:] - limit) <= sky.error[1:])
+    assert np.all(sky.error < 1e-13)
