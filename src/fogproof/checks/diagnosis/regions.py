@@ -23,12 +23,10 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
         if order != tuple(range(k)):
             words = f"these samples fit the pdf with its axes taken in the order {', '.join(map(str, order))}"
             yield Hypothesis("swapped axes", words, of_points(partial(np.take, indices=order, axis=1)))
-    low, high = setting.law.place(np.stack([np.zeros(k), np.ones(k)])) if len(setting.law.axes) == k else (None, None)
-    if low is not None and np.isclose(
-        np.prod(high - low), domain.measure
-    ):  # a box: it fills the space between its corners
+    ends = setting.law.place(np.stack([np.zeros(len(setting.law.axes)), np.ones(len(setting.law.axes))]))
+    if np.isclose(np.prod(ends[1] - ends[0]), domain.measure):  # a box: it fills the space between its corners
         for axis in range(k):
-            yield from _along(axis, float(low[axis]), float(high[axis]))
+            yield from _along(axis, float(ends[0, axis]), float(ends[1, axis]))
     else:
         yield Hypothesis("sign convention", "these samples fit the pdf of -x", lambda s, _: lambda x: s.p(-x))
     yield Hypothesis(
