@@ -10,7 +10,7 @@ from typing import get_args
 import numpy as np
 
 from fogproof.errors import InvalidValueError, UnsupportedError
-from fogproof.estimators.airlight.lighting import Illumination, illumination, towards
+from fogproof.estimators.airlight.lighting import Illumination, Sampler, illumination, met, sampler, towards
 from fogproof.estimators.airlight.occlusion import lit
 from fogproof.estimators.airlight.shadow_rays import ShadowRays, shadow_transmittance
 from fogproof.estimators.airlight.shapes import through
@@ -62,8 +62,8 @@ class LitMedium:
 
     @cached_property
     def length(self) -> float:
-        """How far it goes there, 0 if it misses the medium [m]."""
-        return max(min(self._crossings[1], float(self.ray.length)) - self.start, 0.0)
+        """How far it goes there, 0 if it misses the medium; a light with extent ends it [m]."""
+        return max(min(self._crossings[1], float(self.ray.length), met(self.light, self.ray)) - self.start, 0.0)
 
     @cached_property
     def _crossings(self) -> tuple[float, float]:
@@ -108,6 +108,9 @@ class LitMedium:
 
         It is exact, or an unbiased estimate if the shadow rays are tracked.
         """
+        sample = sampler(self.light)
+        if sample is not None:
+            return self._scattered_from_extent(sample, t, rng)
         mu, distance, irradiance = self._illumination(self.start + t)
         value = self.albedo * self.extinction.sigma(t) * phase_value(self.phase, mu) * irradiance
         uniform = given(self.medium, ROOM, "uniform")
@@ -121,6 +124,19 @@ class LitMedium:
             value *= lit(self.occluders, x, w, distance)
         arriving, cost = self.transmittance(x, w, distance, rng)
         return value * arriving, 1 + cost
+
+    def _scattered_from_extent(
+        self, sample: Sampler, t: np.ndarray, rng: np.random.Generator
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """One direction to a light with extent is drawn for each place, so that each of them looks along one way."""
+        x = self.points(t)
+        w, distance, arriving = sample(x, rng.random((len(t), 2)))
+        mu = np.clip(self.ray.direction @ w, -1, 1)
+        value = self.albedo * self.extinction.sigma(t) * phase_value(self.phase, mu) * arriving
+        if self.occluders:
+            value *= lit(self.occluders, x, w, distance)
+        through, cost = self.transmittance(x, np.ascontiguousarray(w), distance, rng)
+        return value * through, 1 + cost
 
     def transmittance(
         self, x: np.ndarray, w: np.ndarray, distance: np.ndarray, rng: np.random.Generator

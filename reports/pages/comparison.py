@@ -52,9 +52,10 @@ def pair_cases(before: Run, after: Run) -> list[Pair]:
     return sorted(pairs, key=lambda pair: (CHANGES.index(pair.change), not pair.wrong))
 
 
-def worse(before: Run, after: Run) -> bool:
-    """Return whether a case came out worse in the newer run."""
-    return any(pair.change == "worse" for pair in pair_cases(before, after))
+def exit_code(before: Run, after: Run) -> int:
+    """Return 1 if a case came out worse in the newer run, 3 if one is gone: nothing is known of it any more; else 0."""
+    changes = {pair.change for pair in pair_cases(before, after)}
+    return 1 if "worse" in changes else 3 if "gone" in changes or after.unfinished else 0
 
 
 def write_comparison_page(before: Run, after: Run, folder: Path) -> Path:
@@ -86,6 +87,8 @@ def headline(counts: dict[str, int], still: int, total: int) -> tuple[str, str]:
         first = f"{some_cases(counts['worse'])} came out worse"
     elif still:
         first = f"Nothing came out worse, but {some_cases(still)} {'is' if still == 1 else 'are'} wrong as before"
+    elif counts["gone"]:
+        first = f"{some_cases(counts['gone'])} {'is' if counts['gone'] == 1 else 'are'} gone; of the others, nothing came out worse"
     elif counts["same"] == total:
         first = "Every case came out as before"
     else:
@@ -105,14 +108,14 @@ def _settings(before: Run, after: Run) -> list[tuple[str, Any, Any]]:
 
 def _figures(pairs: list[Pair]) -> list[Picture]:
     def resolution(case: Case) -> float:
-        found = case.verdict.resolution if case.verdict else None
+        found = case.verdict.resolution if case.verdict is not None else None
         return found.value if found else 0.0
 
     def kind(case: Case) -> str:
-        return case.verdict.resolution.kind if case.verdict and case.verdict.resolution else ""
+        return case.verdict.resolution.kind if case.verdict is not None and case.verdict.resolution else ""
 
     both = [(pair.name, pair.before, pair.after) for pair in pairs if pair.before and pair.after]
-    seconds = [(name, a.seconds, b.seconds) for name, a, b in both if a.verdict and b.verdict]
+    seconds = [(name, a.seconds, b.seconds) for name, a, b in both if a.verdict is not None and b.verdict is not None]
     caught = [(name, resolution(a), resolution(b)) for name, a, b in both if kind(a) == kind(b)]
     figures = []
     for stem, what, rows in (("seconds", "Time [s]", seconds), ("resolution", "Smallest error caught", caught)):

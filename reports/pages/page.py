@@ -111,6 +111,8 @@ def headline(run: Run) -> tuple[str, str]:
     words["passed"] = "not rejected"
     counts = [f"{count[status]} {words.get(status, status)}" for status in STATUSES if count[status]]
     counts += [f"{len(twins) - missed} of {len(twins)} broken twins rejected"] if twins else []
+    if run.unfinished:
+        first = f"{run.unfinished} cases were run" + (f"; {first[0].lower()}{first[1:]}" if run.cases else "")
     return first, ", ".join(counts) or "The record is empty"
 
 
@@ -118,12 +120,12 @@ def _tone(run: Run) -> str:
     found = {case.status for case in run.cases}
     if found & {"rejected", "surprise", "error"} or any(row.broken for row in run.oracle) or any(map(blind, run.cases)):
         return "bad"
-    return "care" if "inconclusive" in found or not found & {"passed", "known"} else "good"
+    return "care" if run.unfinished or "inconclusive" in found or not found & {"passed", "known"} else "good"
 
 
 def _figures(case: Case) -> list[tuple[int, Finding, dict[str, Any]]]:
     """Return (index, finding, figure) of the different figures of a case, in the order in which the page tells the findings."""
-    findings = list(enumerate(case.verdict.findings if case.verdict else ()))
+    findings = list(enumerate(case.verdict.findings if case.verdict is not None else ()))
     findings.sort(key=lambda pair: OUTCOMES.index(pair[1].outcome))
     found: list[tuple[int, Finding, dict[str, Any]]] = []
     for index, finding in findings:
@@ -134,7 +136,7 @@ def _figures(case: Case) -> list[tuple[int, Finding, dict[str, Any]]]:
 
 def _overview(run: Run) -> Iterable[tuple[str, Any, tuple[float, float]]]:
     """Yield the figures of the whole run: only subjects that ought to be right have uniform p-values."""
-    right = [case.verdict for case in run.cases if case.verdict and case.expected == "not rejected"]
+    right = [case.verdict for case in run.cases if case.verdict is not None and case.expected == "not rejected"]
     exact = tuple(
         f.p_value for v in right for f in v.findings if f.exact and f.p_value is not None and 0 <= f.p_value <= 1
     )
@@ -145,7 +147,7 @@ def _overview(run: Run) -> Iterable[tuple[str, Any, tuple[float, float]]]:
         (case.name, case.verdict.resolution.kind, case.verdict.resolution.value)
         for case in run.cases
         if case.status == "passed"
-        and case.verdict
+        and case.verdict is not None
         and case.verdict.resolution
         and 0 < case.verdict.resolution.value < inf
     )

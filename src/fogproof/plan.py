@@ -20,7 +20,7 @@ from fogproof.scene import (
     Scene,
     VoxelGrid,
 )
-from fogproof.scene.lights import DirectionalLight, Environment, PointLight, SpotLight, strength
+from fogproof.scene.lights import strength
 
 
 @dataclass(frozen=True)
@@ -72,13 +72,13 @@ def plan(scene: Scene) -> Plan:
         Term("colour", *_colour(scene)),
     )
     homogeneous = isinstance(medium, Medium)
-    if light and isinstance(scene.light, PointLight | SpotLight):
+    if light and scene.light is not None and not scene.light.distant:
         integral = (
             "the airlight integral has no elementary form but converges fast after t = h sinh s"
-            if homogeneous
+            if homogeneous and scene.light.delta
             else "nested adaptive quadrature, the transmittance of both legs by the medium's own rule"
         )
-        why = f"{integral}; equiangular sampling cancels the light's 1/r^2"
+        why = f"{integral}; equiangular sampling about the light cancels its 1/r^2"
         return Plan(terms, "single_scattering", f"Airlight, placing 'equiangular'; {_THROUGH[type(medium)]}", why)
     if light:
         why = "parallel light: no 1/r^2 is in the way, the event goes where the medium is"
@@ -165,7 +165,7 @@ def _present(medium: AnyMedium) -> bool:
 
 def _too_far(scene: Scene) -> bool:
     """Return whether light from infinitely far would have to cross an endless medium."""
-    return isinstance(scene.light, DirectionalLight | Environment) and isinstance(scene.medium, Medium)
+    return scene.light is not None and scene.light.distant and isinstance(scene.medium, Medium)
 
 
 def _scattering(medium: AnyMedium) -> Any:

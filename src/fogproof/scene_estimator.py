@@ -27,7 +27,7 @@ from fogproof.estimators.airlight.shadow_rays import ShadowRays
 from fogproof.estimators.free_paths.fog import source_per_collision
 from fogproof.plan import plan
 from fogproof.scene import AnyMedium, ExponentialMedium, LinearMedium, Medium, Procedural, Ray, Scene, VoxelGrid
-from fogproof.scene.lights import DirectionalLight, Light
+from fogproof.scene.lights import Light
 from fogproof.scene.one_channel import one_channel
 
 
@@ -145,7 +145,7 @@ def _airlight(scene: Scene, light: Light) -> Estimator:
     closed = isinstance(scene.medium, Medium | LinearMedium | ExponentialMedium)
     shadow_rays: ShadowRays = "exact" if closed or isinstance(scene.medium, VoxelGrid) else "ratio"
     placing: Placing = "equiangular"
-    if isinstance(light, DirectionalLight):
+    if light.distant:
         placing = "distance" if closed else "uniform"
     return Airlight(scene.medium, scene.ray, light, placing, scene.occluders, shadow_rays=shadow_rays)
 
