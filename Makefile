@@ -8,7 +8,7 @@ BIN    := $(VENV)/bin
 export OPENBLAS_NUM_THREADS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help verify gallery study test lint format calibrate repeat oracle-hard kill-study golden bench clean
+.PHONY: help verify gallery study test lint format calibrate repeat fuzz-oracle oracle-hard kill-study golden bench clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -40,6 +40,9 @@ repeat: $(VENV)/.installed-test  ## 20 runs of the catalogue with fresh seeds: n
 
 oracle-hard: $(VENV)/.installed-test  ## the oracle on 10^5 hard cases against many-digit arithmetic
 	$(BIN)/python tools/oracle_hard.py
+
+fuzz-oracle: $(VENV)/.installed-test  ## 20000 broken lines to the oracle as a process: each costs its own answer and no other
+	$(BIN)/python tools/fuzz_oracle.py
 
 bench: $(VENV)/.installed-test  ## benchmarks, as ratios of interleaved runs
 	@for script in benchmarks/*.py; do echo "== $$script"; $(BIN)/python $$script || exit 1; done

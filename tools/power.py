@@ -164,7 +164,11 @@ MUTANTS = [
     Mutant("forward tail of .1 % dropped", lambda u: _points(_squeezed(u, 0, 0, 0.999))),
     Mutant("backward tail of .1 % dropped", lambda u: _points(_squeezed(u, 0, 0.001, 1))),
     Mutant("1 % of weight 0", _weight_zero, options={"dimensions": 3, "eval": HG.pdf}),
-    Mutant("1 % given up", _given_up, options={"dimensions": 3}),
+    Mutant("right: 1 % given up, pdf of the rest", _given_up, options={"dimensions": 3}, wrong=False),
+    Mutant(
+        "right: 1 % given up, pdf of all", _given_up, lambda x: 0.99 * HG.pdf(x), options={"dimensions": 3}, wrong=False
+    ),
+    Mutant("1 % given up, pdf x .98", _given_up, lambda x: 0.98 * HG.pdf(x), options={"dimensions": 3}),
     Mutant("atom of .02 %", _with_atom, options={"dimensions": 3}),
     Mutant("skipped mu = -.90 +- .005", _skipped, options={"dimensions": 4}),
     Mutant("1 % of surfaces mislabelled", _mislabelled, options={"dimensions": 2, "atoms": PATH.atoms}, **_PATH),

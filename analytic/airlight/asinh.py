@@ -92,6 +92,8 @@ def integrate(segments: Segments, phase: AirlightPhase, gain: Gain | None = None
                 ((phase.absolute + 1 + (gain.eps * phase.peak if gain else 0)) * EPS * plain + noise) * arrives * half
             )
     on_light = (segments.h == 0) & (segments.start <= 0) & (segments.end >= 0) & (segments.length > 0)
+    if phase.peak == np.inf:  # straight towards the light
+        on_light |= (segments.h == 0) & (segments.start < 0) & (segments.length > 0)
     value[on_light], error[on_light] = np.inf, 0.0
     return value, error
 

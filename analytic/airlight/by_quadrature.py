@@ -26,10 +26,9 @@ from fogproof.analytic.geometry.convex_shapes import changes_of_face, contains
 from fogproof.analytic.geometry.flat_rays import FlatRays
 from fogproof.analytic.geometry.shadows import Shadow, shadow_of_direction, shadow_of_point
 from fogproof.analytic.media.coefficients import coefficients, is_uniform
-from fogproof.analytic.phase.functions import phase_pdf
-from fogproof.analytic.phase.varying import share_at
+from fogproof.analytic.phase.varying import phase_values_at
 from fogproof.errors import UnsupportedError
-from fogproof.scene import AnyMedium, VaryingPhase
+from fogproof.scene import AnyMedium
 from fogproof.scene.kinds import given
 from fogproof.scene.lights import Light, strength
 from fogproof.scene.occluders import Occluder
@@ -102,16 +101,6 @@ def _scattering(medium: AnyMedium, x: np.ndarray, w: np.ndarray) -> np.ndarray:
     )
 
 
-def _phase(medium: AnyMedium, x: np.ndarray, mu: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return f_p and its error, (m,) each, at points x (m, 3)."""
-    phase = medium.phase
-    if isinstance(phase, VaryingPhase):
-        first, second, q = phase_pdf(phase.first, mu), phase_pdf(phase.second, mu), share_at(phase, x)
-        return (1 - q) * first.value + q * second.value, first.error + second.error
-    found = phase_pdf(phase, mu)
-    return found.value, found.error
-
-
 def _seen(medium: AnyMedium, shape: Shape, ray: FlatRays, i: np.ndarray, distance: np.ndarray) -> Attenuated:
     """Return the optical thickness from the cameras of rays i (m,) to distances (m,), and its error."""
     return attenuation(medium, shape, ray.origin[i], ray.direction[i], np.maximum(distance, TINY))
@@ -132,7 +121,8 @@ def _from_one_direction(
             x = ray.origin[i] + distance[:, None] * ray.direction[i]
             assert beam.travel is not None
             back, way = np.broadcast_to(-beam.travel, x.shape), np.full(len(x), np.inf)
-            mu = np.sum(back * ray.direction[i], axis=1)
+            mu = np.clip(np.sum(back * ray.direction[i], axis=1), -1, 1)
+            behind, before = (1 - mu) / 2, (1 + mu) / 2
         else:
             own = pieces.ray[which]
             _, w0, wt0 = from_light(where.a[own] + pieces.start[which], where.h[own])
@@ -140,7 +130,8 @@ def _from_one_direction(
             r, t = 0.5 * (w + wt), 0.5 * (w - wt)
             distance = np.clip(t - where.a[own][:, None], pieces.start[which, None], pieces.end[which, None]).ravel()
             x = ray.origin[i] + distance[:, None] * ray.direction[i]
-            inverse, mu = 1 / r, ((wt - w) / (w + wt)).ravel()
+            inverse, mu = 1 / r, np.clip((wt - w) / (w + wt), -1, 1).ravel()
+            behind, before = (w / (w + wt)).ravel(), (wt / (w + wt)).ravel()
             if beam.profile is not None:
                 aim, blur = beam.profile(own, t)
                 uncertain = (inverse * blur).reshape(-1, 1)
@@ -151,7 +142,7 @@ def _from_one_direction(
             back = back / way[:, None]
         near, near_error = _seen(medium, shape, ray, i, distance)
         far, far_error = attenuation(medium, shape, x, back, way)
-        f, f_error = _phase(medium, x, np.clip(mu, -1, 1))
+        f, f_error = phase_values_at(medium.phase, x, mu, behind, before)
         through = _scattering(medium, x, ray.direction[i]) * np.exp(-near - far)
         value = through * (f * jacobian)[:, None]
         error = through * ((f_error + 8 * EPS * f) * jacobian)[:, None] + through * f[:, None] * uncertain
@@ -174,7 +165,7 @@ def _from_many(medium: AnyMedium, ray: FlatRays, shape: Shape, rule: Rule, piece
             w = incident.direction.reshape(-1, 3)
             points = np.repeat(x[some], incident.weight.shape[1], axis=0)
             mu = np.clip(np.einsum("mkc,mc->mk", incident.direction, ahead[some]), -1, 1).ravel()
-            f, f_error = _phase(medium, points, mu)
+            f, f_error = phase_values_at(medium.phase, points, mu, (1 - mu) / 2, (1 + mu) / 2)
             far, far_error = attenuation(medium, shape, points, w, incident.distance.ravel())
             arrives = np.exp(-far) * incident.weight.reshape(-1, 1)
             noise = arrives * (f_error + 8 * EPS * f)[:, None] + arrives * f[:, None] * np.expm1(far_error + 16 * EPS)

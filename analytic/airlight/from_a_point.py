@@ -49,7 +49,7 @@ def from_a_point(
     where = beam.where
     if not is_uniform(medium) or where is None or not contains(shape, np.array(position)):
         return None
-    if beam.profile is not None and beam.gain is None:
+    if beam.profile is not None and (beam.gain is None or airlight_phase(medium.phase).peak == np.inf):
         return None
     sigma, sigma_low = (np.atleast_1d(x) for x in two_sum(medium.sigma_a, medium.sigma_s))
     with np.errstate(all="ignore"):
@@ -85,7 +85,7 @@ def from_a_point(
         relative, steep = moved(where, sigma, phase)
         relative = relative + np.expm1(sigma * (inside.sure_start - inside.start)[:, None])
         error = error + np.where(integral > 0, integral * relative, 0.0)
-        absolute = steep + phase.peak * gain_error[:, None]
+        absolute = steep + np.where(gain_error > 0, phase.peak * gain_error, 0.0)[:, None]
         if absolute.any():
             plain = gather(airlight_asinh.integrate(pieces, airlight_phase(Isotropic()))[0])
             error = error + np.where(plain > 0, plain * absolute, 0.0)

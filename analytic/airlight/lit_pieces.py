@@ -16,8 +16,9 @@ from fogproof.analytic.geometry.flat_rays import FlatRays
 from fogproof.analytic.geometry.shadows import Shadow
 from fogproof.analytic.media.breakpoints import breakpoints
 from fogproof.analytic.media.coefficients import is_uniform
+from fogproof.analytic.phase.varying import phase_components
 from fogproof.errors import UnsupportedError
-from fogproof.scene import AnyMedium, Medium, Ray, VaryingPhase
+from fogproof.scene import AnyMedium, Medium, Ray
 from fogproof.scene.shapes import Shape
 
 DARK = 746.0
@@ -69,8 +70,7 @@ def lit_pieces(
         places.append(start + detail * np.arange(1, steps))
     places += [np.stack(shadow, axis=1) for shadow in shadows]
     if where is not None:
-        phases = [medium.phase.first, medium.phase.second] if isinstance(medium.phase, VaryingPhase) else [medium.phase]
-        mu = np.concatenate([airlight_phase(phase).kinks for phase in phases])
+        mu = np.concatenate([airlight_phase(phase).kinks for phase in phase_components(medium.phase)])
         kinks = -where.h[:, None] * (mu / np.sqrt((1 - mu) * (1 + mu)))
         edges = np.empty((len(where.h), 0)) if beam.edges is None else beam.edges
         nearest = np.zeros((len(where.h), 1))

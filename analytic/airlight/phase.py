@@ -24,7 +24,7 @@ class AirlightPhase(NamedTuple):
 
     factor    (w, wt) -> F, or None where it is 1; (F, its absolute error) if `noisy`
     floor     lower bound of F
-    peak      upper bound of F
+    peak      upper bound of F, inf if it has none
     eps       relative rounding error of F, in units of 2^-52
     slope     (mu_low, mu_high) -> bounds (of |d log F / d theta|, and of |dF / d theta| beyond that), over these cosines:
               what an error of the angle costs
@@ -32,6 +32,7 @@ class AirlightPhase(NamedTuple):
     degree    how many factors tanh s the formula multiplies, which panels must resolve
     kinks     cosines where F is not smooth
     noisy     whether `factor` returns its error
+    folds     the `spread` of an unbounded F, where 1 - mu is at least 1e-300
     finer     kinks and more, where it is not known that F is smooth between them: the error is what they change
     """
 
@@ -45,10 +46,13 @@ class AirlightPhase(NamedTuple):
     kinks: Array = np.empty(0)
     noisy: bool = False
     finer: Array = np.empty(0)
+    folds: float = 0.0
 
     @property
     def spread(self) -> float:
         """How many e-folds further than without F the tails of the integral can matter; inf if F reaches 0."""
+        if self.peak == math.inf:
+            return self.folds
         return math.log(self.peak / self.floor) if self.floor > 0 else math.inf
 
 
@@ -93,4 +97,5 @@ def _mixture(weighted: list[tuple[float, AirlightPhase]]) -> AirlightPhase:
         np.unique(np.concatenate([part.kinks for _, part in weighted])),
         noisy,
         np.unique(np.concatenate([part.finer for _, part in weighted])),
+        max(part.folds for _, part in weighted),
     )

@@ -26,7 +26,7 @@ from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.analytic.geometry.convex_shapes import chord
 from fogproof.analytic.geometry.flat_rays import FlatRays
 from fogproof.analytic.media.coefficients import is_uniform
-from fogproof.analytic.phase.functions import phase_pdf
+from fogproof.analytic.phase.functions import has_poles, phase_values
 from fogproof.scene import AnyMedium
 from fogproof.scene.kinds import given
 from fogproof.scene.lights import Environment
@@ -39,6 +39,9 @@ SOURCE = "Beer's law along both ways, integrated; Takahasi & Mori 1974"
 
 REACH = 20.0
 """Largest |s|: 1 - |tanh s| < 1e-17 beyond."""
+
+FAR = 345.0
+"""The same where the phase function may be infinite straight ahead."""
 
 Rule = tuple[np.ndarray, np.ndarray]
 Answer = tuple[np.ndarray, np.ndarray]
@@ -105,9 +108,12 @@ def over_directions(
     sine0 = np.sqrt((1 - mu0) * (1 + mu0))
     tangent = np.arctanh(min(sine0, 1 - EPS))  # beyond that |s| all azimuths are on one side of the horizon
     kinks = np.arctanh(np.clip(airlight_phase(phase).kinks, -1 + EPS, 1 - EPS))
-    breaks = np.unique(np.clip([-REACH, *range(-6, 7, 3), -tangent, tangent, REACH, *kinks], -REACH, REACH))
+    outermost = [FAR, 160.0, 70.0, 35.0] if has_poles(phase) else [REACH]
+    reach = outermost[0]
+    places = [*range(-6, 7, 3), -tangent, tangent, *kinks, *outermost, *(-x for x in outermost)]
+    breaks = np.unique(np.clip(places, -reach, reach))
     s, s_weights = (x.ravel() for x in on_interval(breaks[:-1], breaks[1:], fine))
-    f = phase_pdf(phase, np.tanh(s))
+    value, error = phase_values(phase, np.tanh(s), 1 / (1 + np.exp(2 * s)), 1 / (1 + np.exp(-2 * s)))
     s_weights = s_weights / np.cosh(s) ** 2
     C, D = np.tanh(s) * mu0, sine0 / np.cosh(s)
     horizon = np.arccos(np.clip(-C / D, -1, 1)) if sine0 > 0 else np.where(C > 0, np.pi, 0.0)
@@ -115,7 +121,7 @@ def over_directions(
     for low, high in ((np.zeros_like(horizon), horizon), (horizon, np.full_like(horizon, np.pi))):
         phi, weights = on_interval(low, high, fine)
         total = total + 2 * np.einsum("sp,spc->sc", weights, G(C[:, None] + D[:, None] * np.cos(phi)))
-    return (s_weights * f.value) @ total, (s_weights * f.error) @ total
+    return (s_weights * value) @ total, (s_weights * error) @ total
 
 
 def between_planes(

@@ -13,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import TINY
-from fogproof.analytic.multiple.slab_modes import Modes, amplitudes, unit_rule
+from fogproof.analytic.arithmetic.gauss_legendre import unit_rule
+from fogproof.analytic.multiple.slab_modes import Modes, amplitudes
 
 SOURCE = "Davison & Sykes 1957, Neutron Transport Theory, section 7"
 

@@ -14,9 +14,11 @@ from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.analytic.declaration import quantity
 from fogproof.analytic.multiple.scattering_arguments import checked_count
 from fogproof.contracts import Reference
+from fogproof.errors import InvalidValueError
 from fogproof.scene.arrays import FloatArray
 from fogproof.validate import as_float_array, require
 
+MOST_FLIGHTS = 1 << 53
 METHOD = "closed form"
 SOURCE = "Chandrasekhar 1943, Stochastic problems in physics and astronomy"
 
@@ -37,7 +39,7 @@ def mean_displacement(flights: int, g: FloatArray, mean_free_path: FloatArray = 
     Error: (n + 8) eps, relative to the sum of |g|^k.
     """
     n, g, length = _checked(flights, g, mean_free_path)
-    value, size = length * _geometric(n, g), length * _geometric(n, np.abs(g))
+    value, size = length * _sums(n, g)[0], length * _sums(n, np.abs(g))[0]
     return Reference(value, (n + 8) * EPS * size + TINY, METHOD, SOURCE)
 
 
@@ -54,22 +56,27 @@ def mean_square_displacement(flights: int, g: FloatArray, mean_free_path: FloatA
     """
     n, g, length = _checked(flights, g, mean_free_path)
 
-    def weighted(x: np.ndarray) -> np.ndarray:
-        total, partial = np.zeros_like(x), np.zeros_like(x)
-        for _ in range(n):  # sum_(m=1)^n (1 + x + … + x^(m-1))
-            partial = 1 + x * partial
-            total = total + partial
-        return total
-
     square = 2 * length * length
-    return Reference(square * weighted(g), 2 * (n + 8) * EPS * square * weighted(np.abs(g)) + TINY, METHOD, SOURCE)
+    return Reference(
+        square * _sums(n, g)[1], 2 * (n + 8) * EPS * square * _sums(n, np.abs(g))[1] + TINY, METHOD, SOURCE
+    )
 
 
-def _geometric(n: int, x: np.ndarray) -> np.ndarray:
-    total = np.zeros_like(x)
-    for _ in range(n):
-        total = 1 + x * total
-    return total
+def _sums(n: int, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return S_n = 1 + x + … + x^(n-1) and S_1 + … + S_n, in as many steps as n has bits.
+
+    S_(2m) = S_m + x^m S_m, and the sum of the sums doubles likewise, with m S_m for what the first half adds to the second.
+    """
+    power, single, double = np.ones_like(x), np.zeros_like(x), np.zeros_like(x)
+    m = 0
+    with np.errstate(under="ignore"):
+        for bit in f"{n:b}":
+            double = double + (m * single + power * double)
+            single, power, m = single + power * single, power * power, 2 * m
+            if bit == "1":
+                single, power, m = 1 + x * single, x * power, m + 1
+                double = double + single
+    return single, double
 
 
 def _checked(flights: Any, g: Any, mean_free_path: Any) -> tuple[int, np.ndarray, np.ndarray]:
@@ -78,6 +85,8 @@ def _checked(flights: Any, g: Any, mean_free_path: Any) -> tuple[int, np.ndarray
         as_float_array("g", g),
         as_float_array("mean_free_path", mean_free_path),
     )
+    if n > MOST_FLIGHTS:
+        raise InvalidValueError("flights", "must be at most 2^53", n, "beyond, counts are no float64 numbers")
     require("g", g, np.abs(g) <= 1, "must lie in [-1, 1]", "it is the mean cosine of the phase function")
     require("mean_free_path", length, np.isfinite(length) & (length > 0), "must be finite and > 0 [m]")
     g, length = np.broadcast_arrays(g, length)

@@ -1,29 +1,29 @@
-"""Reflection of unpolarised light at a smooth boundary between two dielectrics."""
+"""Transmission of unpolarised light at a smooth boundary between two dielectrics."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 
 
-def fresnel_inside(index: float, mu: np.ndarray) -> np.ndarray:
-    """Return the reflectance seen from inside a medium of refractive index >= 1, at cosines mu in (0, 1].
+def transmissivity(index: float, inside: np.ndarray, outside: np.ndarray) -> np.ndarray:
+    """Return the share that crosses the boundary of a medium of refractive index >= 1, the same in both directions.
 
-    1 beyond the critical angle. By reciprocity it is also that seen from outside, at the refracted angle.
+    inside, outside  (...) cosines on either side that belong together by Snell's law; outside = 0 beyond the critical angle
+
+    It is 1 minus the reflectance, written as a product: no digit is lost at grazing angles. Relative error: 12 eps.
     Source: Fresnel 1823; Born & Wolf 1999, Principles of Optics, section 1.5.2.
     """
     if index == 1:
-        return np.zeros_like(mu)
-    outside = outside_cosine(index, mu)
-    s = (index * mu - outside) / (index * mu + outside)
-    p = (index * outside - mu) / (index * outside + mu)
-    return np.where(outside > 0, (s * s + p * p) / 2, 1.0)
+        return np.ones(np.broadcast_shapes(np.shape(inside), np.shape(outside)))
+    s, p = index * inside + outside, index * outside + inside
+    return 2 * (index * inside / s / s + index * inside / p / p) * outside
 
 
-def outside_cosine(index: float, mu: np.ndarray) -> np.ndarray:
-    """Return the cosine outside for cosines mu inside (Snell's law), 0 beyond the critical angle."""
-    return np.sqrt(np.maximum(1 - index * index * (1 - mu) * (1 + mu), 0.0))
-
-
-def inside_cosine(index: float, mu: np.ndarray) -> np.ndarray:
+def inside_cosine(index: float, mu: Any) -> np.ndarray:
     """Return the cosine inside for cosines mu outside (Snell's law)."""
-    return np.sqrt(1 - (1 - mu) * (1 + mu) / (index * index))
+    if index == 1:
+        return np.asarray(mu, float)
+    with np.errstate(under="ignore"):
+        return np.sqrt((index - 1) * (index + 1) + np.square(mu)) / index

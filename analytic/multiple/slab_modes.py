@@ -13,15 +13,28 @@ Source: Chandrasekhar 1960, Radiative Transfer, chapters 3 and 8; Stamnes, Tsay,
 
 from __future__ import annotations
 
-from functools import cache
+import math
 from typing import Literal, NamedTuple
 
 import numpy as np
+
+from fogproof.analytic.arithmetic.gauss_legendre import unit_rule
 
 SOURCE = "Chandrasekhar 1960, Radiative Transfer, chapter 8; Stamnes, Tsay, Wiscombe & Jayaweera 1988"
 
 Parity = Literal["even", "odd"]
 PARITIES: tuple[Parity, Parity] = ("even", "odd")
+
+
+FINEST = 1e-18
+"""Smallest cosine told from 0: what is seen there changes like mu ln(mu)."""
+
+FEWEST = 4
+
+BEND = 0.98
+"""Share of y^2 in the substitution at mu = 0: with 1 the smallest node would be 25 times smaller, and nothing gained."""
+
+PRECISION = 2.0**52
 
 
 class Modes(NamedTuple):
@@ -42,33 +55,25 @@ class Modes(NamedTuple):
     source: np.ndarray
 
 
-def quadrature(smallest: float, n: int, top: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
+def quadrature(smallest: float, n: int, top: float = 1.0, weight: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
     """Return nodes and weights on (0, top): 2 n of them, and at most n more for each factor 6 of top below 3 `smallest`.
 
     Radiance is of the form a(mu) + b(mu) ln(mu) near mu = 0, and it changes where mu is about the thickness of the slab:
-    `smallest` is the smallest mu that matters. The lowest panel has nodes y^2 of a Gauss-Legendre rule in y, the others
-    are geometric.
+    `smallest` is the smallest mu that matters. The lowest panel has nodes of a Gauss-Legendre rule in y, nearly y^2, the
+    others end at top/6, top/36, … The error of n nodes on one of them is about 6^(-n), of which only a share counts: its
+    upper end over `smallest`, or `weight`.
     """
-    low = min(top, max(3 * smallest, 1e-14))
-    count = max(0, int(np.ceil(np.log(top / low) / np.log(6))))
-    few = n if count == 0 else min(n, 20)
-    y, v = unit_rule(2 * few)
-    if count == 0:
-        return top * y * y, 2 * top * y * v
-    edges = low * (top / low) ** (np.arange(count + 1) / count)
-    mu, w = [low * y * y], [2 * low * y * v]
-    for a, b, size in zip(edges[:-1], edges[1:], [few] * (count - 1) + [n], strict=True):
-        y, v = unit_rule(size)
+    count = max(0, math.ceil(math.log(top / min(top, max(3 * smallest, FINEST))) / math.log(6)))
+    ends = top * 6.0 ** -np.arange(count, -1, -1)
+    share = np.minimum(1.0, np.maximum(np.minimum(ends, weight), smallest))
+    sizes = np.maximum(FEWEST, np.ceil(n * (1 + np.log(np.maximum(share, FINEST)) / math.log(PRECISION)))).astype(int)
+    y, v = unit_rule(2 * (n if count == 0 else int(sizes[0])))
+    mu, w = [ends[0] * y * (1 - BEND + BEND * y)], [ends[0] * (1 - BEND + 2 * BEND * y) * v]
+    for a, b, size in zip(ends[:-1], ends[1:], sizes[1:], strict=True):
+        y, v = unit_rule(int(size))
         mu.append(a + (b - a) * y)
         w.append((b - a) * v)
     return np.concatenate(mu), np.concatenate(w)
-
-
-@cache
-def unit_rule(n: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the Gauss-Legendre rule of n nodes on (0, 1)."""
-    x, w = np.polynomial.legendre.leggauss(n)
-    return (1 + x) / 2, w / 2
 
 
 def shape_at_boundary(modes: Modes, half: float, parity: Parity) -> tuple[np.ndarray, np.ndarray]:

@@ -12,8 +12,8 @@ from fogproof.analytic.multiple.legendre_modes import complex_legendre_modes
 from fogproof.analytic.multiple.orders import taylor_coefficients
 from fogproof.analytic.multiple.scattering_arguments import checked_cosine, checked_count, checked_length
 from fogproof.analytic.multiple.slab import slab_reflectance, slab_transmittance
-from fogproof.analytic.multiple.slab_modes import SOURCE
-from fogproof.analytic.multiple.slab_solution import Leaving, leaving_slab, nodes_inside
+from fogproof.analytic.multiple.slab_modes import SOURCE, quadrature
+from fogproof.analytic.multiple.slab_solution import Leaving, leaving_slab
 from fogproof.analytic.phase.functions import phase_legendre_moments
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError
@@ -69,11 +69,11 @@ def _orders(tau: Any, mu0: Any, count: Any, phase: Any, pick: Callable[[Leaving]
     moments = phase_legendre_moments(phase or Isotropic(), 2 * MOST_NODES)
     chi = moments.value
     n = int(np.clip(1 + np.flatnonzero(np.abs(chi) > NEGLIGIBLE)[-1] // 2, FEWEST_NODES, MOST_NODES))
-    nodes = nodes_inside(min(float(b), 10 * float(np.min(mu0))), n, 1.0)
+    nodes = quadrature(min(float(b), 10 * float(np.min(mu0, initial=1.0))), n)
 
     def at(c: complex) -> np.ndarray:
-        modes = complex_legendre_modes(c, chi[: 2 * n], nodes.mu, nodes.w) if b > 0 else None
-        return pick(leaving_slab(modes, nodes, float(b), mu0.ravel(), 1.0))
+        modes = complex_legendre_modes(c, chi[: 2 * n], *nodes) if b > 0 else None
+        return pick(leaving_slab(modes, float(b), mu0.ravel()))
 
     def solution(albedos: np.ndarray) -> np.ndarray:
         return np.stack([at(c) for c in albedos], axis=-1).reshape(*mu0.shape, -1)

@@ -11,7 +11,7 @@ A module `<kind>.py` gives, of the kind's parameters `phase`, with SOURCE and ME
     kinks(phase)                    cosines where f is not smooth
     airlight(phase)                 4 pi f as the airlight integral sees it, `fogproof.analytic.airlight.phase`
     ball(phase, mu, analytic)       4 pi f at a complex ball of cosines
-    peak(phase)                     an upper bound of 4 pi f, exact; infinity as a ball where there is none
+    peak(phase, mu)                 an upper bound of 4 pi f at cosines up to the ball mu
     parts(phase)                    for a weighted mean of other kinds: their weights and they; then nothing else is needed
 
 What a kind does not give comes from its pdf by quadrature (`fallback`), with an error that counts what was missed;

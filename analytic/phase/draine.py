@@ -108,6 +108,6 @@ def ball(phase: CornetteShanks | Draine, mu: Any, analytic: bool) -> Any:
     return lobe * (1 + alpha * mu * mu) / (1 + alpha * (1 + 2 * g * g) / 3)
 
 
-def peak(phase: CornetteShanks | Draine) -> Any:
+def peak(phase: CornetteShanks | Draine, _mu: Any) -> Any:
     """Return an upper bound of 4 pi f."""
-    return (1 + rational(phase.alpha)) * henyey_greenstein.peak(HenyeyGreenstein(phase.g))
+    return (1 + rational(phase.alpha)) * henyey_greenstein.peak(HenyeyGreenstein(phase.g), _mu)

@@ -131,17 +131,30 @@ def phase_legendre_moments(phase: PhaseFunctionField, count: Count) -> Reference
     return _reference(parts, _method(parts, "legendre_moments"), value, error)
 
 
-def phase_density(phase: PhaseFunction, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return f_p [1/sr] where (1 - mu)/2 = x and (1 + mu)/2 = y, and its error; both are taken as exact.
+def has_poles(phase: PhaseFunction) -> bool:
+    """Return whether a phase function may be infinite straight ahead or back: then it has a formula in (1 - mu)/2."""
+    return any(given(part, ROOM, "density") is not None for _, part in weighted_parts(phase))
 
-    Where a kind has no formula in x and y its pdf is taken at y - x, and what that rounds counts.
+
+def phase_values(phase: PhaseFunction, mu: np.ndarray, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return f_p(mu) [1/sr], and its error, where (1 - mu)/2 = x and (1 + mu)/2 = y are known better than mu.
+
+    Only kinds with a formula in x and y can make use of that; what they are rounded by does not count in the error.
     """
-    return _sum(weighted_parts(phase), "density", x, y)
+    parts = weighted_parts(phase)
+    found = [
+        part_of(part, x, y) if (part_of := given(part, ROOM, "density")) else formula(part, "pdf")(part, mu)
+        for _, part in parts
+    ]
+    return _mean(parts, found)
 
 
 def _sum(parts: Parts, what: str, *arguments: Any) -> tuple[Any, Any]:
     """Return the weighted mean of one of the formulas, and its error."""
-    pairs = [formula(part, what)(part, *arguments) for _, part in parts]
+    return _mean(parts, [formula(part, what)(part, *arguments) for _, part in parts])
+
+
+def _mean(parts: Parts, pairs: list[tuple[Any, Any]]) -> tuple[Any, Any]:
     if len(parts) == 1:
         return pairs[0]
     weights = [float(weight) for weight, _ in parts]

@@ -46,6 +46,6 @@ def ball(_phase: Hazy, mu: Any, _analytic: bool) -> Any:
     return power_lobe.ball(POWER, mu)
 
 
-def peak(_phase: Hazy) -> int:
+def peak(_phase: Hazy, _mu: Any) -> int:
     """Return the greatest 4 pi f."""
     return 1 + POWER // 2

@@ -96,7 +96,7 @@ def ball(phase: HenyeyGreenstein, mu: Any, analytic: bool) -> Any:
     return (1 - g * g) / (distance * flint().acb(distance).sqrt(analytic=analytic))
 
 
-def peak(phase: HenyeyGreenstein) -> Any:
+def peak(phase: HenyeyGreenstein, _mu: Any) -> Any:
     """Return the greatest 4 pi f."""
     size = abs(rational(phase.g))
     return (1 + size) / (1 - size) ** 2

@@ -52,6 +52,6 @@ def ball(_phase: Isotropic, mu: Any, _analytic: bool) -> Any:
     return mu * 0 + 1
 
 
-def peak(_phase: Isotropic) -> int:
+def peak(_phase: Isotropic, _mu: Any) -> int:
     """Return the greatest 4 pi f."""
     return 1

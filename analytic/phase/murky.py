@@ -46,6 +46,6 @@ def ball(_phase: Murky, mu: Any, _analytic: bool) -> Any:
     return power_lobe.ball(POWER, mu)
 
 
-def peak(_phase: Murky) -> int:
+def peak(_phase: Murky, _mu: Any) -> int:
     """Return the greatest 4 pi f."""
     return 1 + POWER // 2

@@ -54,6 +54,6 @@ def ball(_phase: Rayleigh, mu: Any, _analytic: bool) -> Any:
     return 3 * (1 + mu * mu) / 4
 
 
-def peak(_phase: Rayleigh) -> int:
+def peak(_phase: Rayleigh, _mu: Any) -> int:
     """Return an upper bound of 4 pi f, 3/2."""
     return 2

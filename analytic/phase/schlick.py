@@ -81,7 +81,7 @@ def ball(phase: Schlick, mu: Any, _analytic: bool) -> Any:
     return (1 - k * k) / (1 - k * mu) ** 2
 
 
-def peak(phase: Schlick) -> Any:
+def peak(phase: Schlick, _mu: Any) -> Any:
     """Return the greatest 4 pi f."""
     size = abs(rational(phase.k))
     return (1 + size) / (1 - size)

@@ -9,12 +9,12 @@ import numpy as np
 from fogproof.analytic.arithmetic import double_double as dd
 from fogproof.analytic.arithmetic.error_free import EPS, two_sum
 from fogproof.analytic.declaration import FORWARD, quantity
-from fogproof.analytic.phase.functions import phase_pdf
+from fogproof.analytic.phase.functions import phase_pdf, phase_values
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError
 from fogproof.scene import Ramp, VaryingPhase
 from fogproof.scene.arrays import FloatArray, PointArray
-from fogproof.scene.phase import AnyPhaseField
+from fogproof.scene.phase import AnyPhase, AnyPhaseField, PhaseFunction
 from fogproof.validate import as_float_array, points, require
 
 
@@ -57,6 +57,22 @@ def phase_pdf_at(phase: AnyPhaseField, x: PointArray, mu: FloatArray) -> Referen
     if isinstance(phase.share, Ramp):
         error = error + EPS * share * np.abs(first.value - second.value)
     return Reference(value, error, f"blend of {first.method} and {second.method}", f"{first.source}; {second.source}")
+
+
+def phase_components(phase: AnyPhase) -> list[PhaseFunction]:
+    """Return the phase functions that a medium scatters by, in whatever proportion."""
+    return [phase.first, phase.second] if isinstance(phase, VaryingPhase) else [phase]
+
+
+def phase_values_at(
+    phase: AnyPhase, points: np.ndarray, mu: np.ndarray, x: np.ndarray, y: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return f_p and its error at points (m, 3), see `phase_values`."""
+    if not isinstance(phase, VaryingPhase):
+        return phase_values(phase, mu, x, y)
+    (first, first_error), (second, second_error) = (phase_values(f, mu, x, y) for f in phase_components(phase))
+    q = share_at(phase, points)
+    return (1 - q) * first + q * second, first_error + second_error
 
 
 def share_at(phase: VaryingPhase, x: Any) -> np.ndarray:

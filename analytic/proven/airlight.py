@@ -48,9 +48,9 @@ def factor(phase: PhaseFunction, mu: Any, analytic: bool = False) -> Any:
     return _mean(phase, "ball", mu, analytic)
 
 
-def peak(phase: PhaseFunction) -> Any:
-    """Return an upper bound of 4 pi f_p."""
-    return _mean(phase, "peak")
+def peak(phase: PhaseFunction, mu: Any) -> Any:
+    """Return an upper bound of 4 pi f_p at forward cosines up to mu, a ball."""
+    return _mean(phase, "peak", mu)
 
 
 def _mean(phase: PhaseFunction, name: str, *arguments: Any) -> Any:
@@ -83,7 +83,7 @@ def _beside(sigma: Any, h: Any, a: Any, b: Any, phase: PhaseFunction) -> Ball:
         end = start.max(arb(0)) + bits
         if sigma:
             end = end.min(((first + bits / sigma) / h).log())
-        bound = peak(phase) * (-(sigma * (h * end.exp() - first))).exp() * 2 * (-end).exp() / h
+        bound = peak(phase, -end.tanh()) * (-(sigma * (h * end.exp() - first))).exp() * 2 * (-end).exp() / h
         rest = arb(0).union(bound.upper())
     inside = acb.integral(integrand, acb(start), acb(end), abs_tol=arb(0)).real
     return front * (inside + rest)

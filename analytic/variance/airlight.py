@@ -146,13 +146,14 @@ def _integral(
     shape = _Shape(1.0 if sampling == "equiangular" else 3.0, h, a, sigma if free else 2 * sigma, 2 * sigma)
     start, end = np.arcsinh(a / h), np.clip(np.arcsinh(b / h), -FAR, FAR)
 
-    tail = TAIL + 2 * np.log(max(phase.peak, 1.0)) - (2 * np.log(phase.floor) if phase.floor > 0 else 0.0)
+    greatest = phase.peak if phase.peak < np.inf else phase.floor * np.exp(phase.folds)
+    tail = TAIL + 2 * np.log(max(greatest, 1.0)) - (2 * np.log(phase.floor) if phase.floor > 0 else 0.0)
     top = _root(shape.slope, start, end)
     peak = shape.log(top)
     low = _root(lambda s: shape.log(s) < peak - tail, start, top, increasing=True)
     high = _root(lambda s: shape.log(s) >= peak - tail, top, end)
     chord = (low - start > 0) * (top - low) + (end - high > 0) * (high - top)
-    left_out = phase.peak**2 * np.exp(peak - tail) * chord / tail
+    left_out = greatest * np.exp(peak - tail) * greatest * chord / tail
 
     edges = [low]
     for cosine in np.sort(phase.kinks)[::-1]:

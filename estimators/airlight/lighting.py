@@ -28,9 +28,38 @@ class Illumination(NamedTuple):
     irradiance: np.ndarray
 
 
-def one_direction_a_point(light: Light) -> bool:
-    """Return whether the light reaches each point from a single direction."""
-    return given(light, ROOM, "illumination") is not None
+class Sampled(NamedTuple):
+    """A direction to a light with extent from each of n points.
+
+    w         (3, n) unit vectors from the points
+    distance  (n,) of the light there [m]
+    arriving  (n,) its radiance over the density of w [W/m^2]
+    """
+
+    w: np.ndarray
+    distance: np.ndarray
+    arriving: np.ndarray
+
+
+Sampler = Callable[[np.ndarray, np.ndarray], Sampled]
+"""(points (3, n), uniforms (n, 2)) -> directions to a light with extent."""
+
+
+def sampler(light: Light) -> Sampler | None:
+    """Return how directions to a light with extent are drawn; None for others."""
+    sample = given(light, ROOM, "sample")
+    return None if sample is None else lambda x, u: sample(light, x, u)
+
+
+def can_be_sampled(light: Light) -> bool:
+    """Return whether each point knows where to look for the light."""
+    return given(light, ROOM, "illumination") is not None or sampler(light) is not None
+
+
+def met(light: Light, ray: Ray) -> float:
+    """Return the distance at which a ray meets the light [m], inf if it does not."""
+    distance = given(light, ROOM, "met")
+    return np.inf if distance is None else float(distance(light, ray.origin, ray.direction))
 
 
 def illumination(light: Light, ray: Ray) -> Callable[[np.ndarray], Illumination]:
@@ -52,6 +81,12 @@ def focus(light: Light) -> tuple[float, float, float] | None:
     """Return the point about which equiangular sampling is done; None for a light from infinitely far."""
     point = given(light, ROOM, "focus")
     return None if point is None else point(light)
+
+
+def breadth(light: Light) -> float:
+    """Return how close to the focus all places are alike [m]: the size of the light."""
+    size = given(light, ROOM, "breadth")
+    return 0.0 if size is None else float(size(light))
 
 
 def foot(ray: Ray, position: tuple[float, float, float]) -> tuple[float, float]:

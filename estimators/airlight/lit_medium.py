@@ -10,7 +10,7 @@ from typing import get_args
 import numpy as np
 
 from fogproof.errors import InvalidValueError, UnsupportedError
-from fogproof.estimators.airlight.lighting import Illumination, illumination, towards
+from fogproof.estimators.airlight.lighting import Illumination, Sampler, illumination, met, sampler, towards
 from fogproof.estimators.airlight.occlusion import lit
 from fogproof.estimators.airlight.shadow_rays import ShadowRays, shadow_transmittance
 from fogproof.estimators.airlight.shapes import through
@@ -65,8 +65,8 @@ class LitMedium:
 
     @cached_property
     def length(self) -> float:
-        """How far it goes there, 0 if it misses the medium [m]."""
-        return max(min(self._crossings[1], float(self.ray.length)) - self.start, 0.0)
+        """How far it goes there, 0 if it misses the medium; a light with extent ends it [m]."""
+        return max(min(self._crossings[1], float(self.ray.length), met(self.light, self.ray)) - self.start, 0.0)
 
     @cached_property
     def _crossings(self) -> tuple[float, float]:
@@ -111,6 +111,9 @@ class LitMedium:
 
         It is exact, or an unbiased estimate if the shadow rays are tracked.
         """
+        sample = sampler(self.light)
+        if sample is not None:
+            return self._scattered_from_extent(sample, t, rng)
         mu, distance, irradiance = self._illumination(self.start + t)
         value = self.extinction.sigma(t) * irradiance
         uniform = given(self.medium, ROOM, "uniform")
@@ -120,12 +123,29 @@ class LitMedium:
             return value * np.exp(-sigma_t * distance) if sigma_t > 0 else value, np.ones_like(t)
         x = self.points(t)
         w = towards(self.light, x)
-        albedo = sources_at(self.medium, x.T)[0] if sources_vary(self.medium) else self.albedo
-        value *= albedo * phase_value_at(self.medium.phase, x, mu)
+        value *= self._source(x, mu)
         if self.occluders:
             value *= lit(self.occluders, x, w, distance)
         arriving, cost = self.transmittance(x, w, distance, rng)
         return value * arriving, 1 + cost
+
+    def _source(self, x: np.ndarray, mu: np.ndarray) -> np.ndarray:
+        """Return albedo times phase function at points x (3, n), either of which may differ from place to place [1/sr]."""
+        albedo = sources_at(self.medium, x.T)[0] if sources_vary(self.medium) else self.albedo
+        return albedo * phase_value_at(self.medium.phase, x, mu)
+
+    def _scattered_from_extent(
+        self, sample: Sampler, t: np.ndarray, rng: np.random.Generator
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """One direction to a light with extent is drawn for each place, so that each of them looks along one way."""
+        x = self.points(t)
+        w, distance, arriving = sample(x, rng.random((len(t), 2)))
+        mu = np.clip(self.ray.direction @ w, -1, 1)
+        value = self._source(x, mu) * self.extinction.sigma(t) * arriving
+        if self.occluders:
+            value *= lit(self.occluders, x, w, distance)
+        through, cost = self.transmittance(x, np.ascontiguousarray(w), distance, rng)
+        return value * through, 1 + cost
 
     def transmittance(
         self, x: np.ndarray, w: np.ndarray, distance: np.ndarray, rng: np.random.Generator

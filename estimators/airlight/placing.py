@@ -11,7 +11,7 @@ from fogproof.contracts import Draw
 from fogproof.domains import HalfLine, Interval
 from fogproof.errors import InvalidValueError, UnsupportedError
 from fogproof.estimators.airlight.equiangular import Equiangular
-from fogproof.estimators.airlight.lighting import focus, foot
+from fogproof.estimators.airlight.lighting import breadth, focus, foot
 from fogproof.estimators.airlight.lit_medium import LitMedium
 from fogproof.estimators.free_paths.free_path import FreePath, TruncatedFreePath
 from fogproof.validate import number
@@ -113,6 +113,7 @@ def placer(lit: LitMedium, placing: Placing) -> Placer:
             if point is None:
                 raise UnsupportedError("equiangular sampling needs a light at a point", "light")
             h, along = foot(lit.ray, point)
+            h = float(np.hypot(h, breadth(lit.light)))
             a = lit.start - along
             return Shifted(Equiangular(h, a, a + lit.length))
         case "free-path":

@@ -10,7 +10,7 @@ import numpy as np
 
 from fogproof.contracts import Draws
 from fogproof.errors import UnsupportedError
-from fogproof.estimators.airlight.lighting import one_direction_a_point
+from fogproof.estimators.airlight.lighting import can_be_sampled
 from fogproof.estimators.airlight.lit_medium import LitMedium
 from fogproof.estimators.airlight.placing import Placer, Placing, placer
 from fogproof.estimators.airlight.shadow_rays import ShadowRays
@@ -40,8 +40,10 @@ class Airlight:
     shadow_rays: ShadowRays = "exact"
 
     def __post_init__(self) -> None:
-        if not one_direction_a_point(self.light):
-            raise UnsupportedError("Airlight needs a light with a direction; see EnvironmentAirlight", "light")
+        if not can_be_sampled(self.light):
+            raise UnsupportedError(
+                "Airlight needs a light that points know where to look for; see EnvironmentAirlight", "light"
+            )
 
     @cached_property
     def _lit(self) -> LitMedium:

@@ -1,7 +1,7 @@
 """Compiled kernels: numba, loaded where it is first needed, with a cache on disk that notices every edit.
 
-Kernels live in this folder. Its files, save this one, import numba, and nobody imports them at the head of another file, except
-each other. So `import fogproof` stays light, and what compiles when can be seen from the names.
+Kernels live in this folder. Its files, save this one and `cache_files`, import numba, and nobody imports them at the head of
+another file, except each other. So `import fogproof` stays light, and what compiles when can be seen from the names.
 
 numba's own cache looks at the file of the outermost function alone: after an edit of a function it calls in another file, a
 new process would still run the old machine code. Here the directory of the cache is named after a hash of all kernel files and
@@ -18,6 +18,8 @@ from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any
+
+from fogproof.estimators.kernels.cache_files import CacheFiles, prune
 
 _LOCK = threading.RLock()
 _MEDIA = Path(__file__).parents[1] / "media"
@@ -39,11 +41,11 @@ def kernel(function: Callable[..., Any]) -> Any:
     with _LOCK:
         before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(directory)
         try:
-            return numba.njit(cache=True, **KERNEL_OPTIONS)(
-                function
-            )  # the directory is read here, not when it compiles
+            compiled = numba.njit(cache=True, **KERNEL_OPTIONS)(function)  # the directory is read here
         finally:
             numba.config.CACHE_DIR = before
+    compiled._cache._cache_file = CacheFiles(directory, f"{function.__module__}.{function.__qualname__}")
+    return compiled
 
 
 def inlined(function: Callable[..., Any]) -> Any:
@@ -78,6 +80,7 @@ def cache_directory(sources: Path) -> Path | None:
         directory.mkdir(parents=True, exist_ok=True)
     except OSError:
         return None
+    prune(root, directory)
     return directory if os.access(directory, os.W_OK | os.X_OK) else None
 
 

@@ -1,11 +1,17 @@
-"""Directions inside kernels: phase functions, cosine-weighted hemispheres, reflection and refraction, one at a time."""
+"""Directions inside kernels: phase functions, cosine-weighted hemispheres, reflection and refraction, one at a time.
+
+The type of a lobe chooses at compile time how it is drawn from: by a closed form, from a table, or one of two by the place.
+"""
 
 from __future__ import annotations
 
-import numpy as np
+from typing import Any
 
-from fogproof.estimators.kernels.compiling import inlined
-from fogproof.estimators.kernels.path_data import HENYEY_GREENSTEIN, ISOTROPIC, Lobe
+import numpy as np
+from numba.extending import overload
+
+from fogproof.estimators.kernels.compiling import KERNEL_OPTIONS, inlined
+from fogproof.estimators.kernels.path_data import HENYEY_GREENSTEIN, ISOTROPIC, BlendLobe, Lobe
 
 Vector = tuple[float, float, float]
 
@@ -49,9 +55,21 @@ def about(dx: float, dy: float, dz: float, versine: float, coversine: float, cos
     return x * scale, y * scale, z * scale
 
 
-@inlined
-def scattered(rng: np.random.Generator, lobe: Lobe, dx: float, dy: float, dz: float) -> Vector:
-    """Return a direction after scattering of light that travels along d, with the density of the phase function."""
+def scattered(
+    rng: np.random.Generator, lobe: Any, x: float, y: float, z: float, dx: float, dy: float, dz: float
+) -> Vector:
+    """Return a direction after light along d scatters at (x, y, z), with the density of the phase function; in kernels only."""
+    raise NotImplementedError("runs inside kernels only")
+
+
+def phase_density(lobe: Any, x: float, y: float, z: float, mu: float) -> float:
+    """Return the phase function at (x, y, z) and a forward cosine [1/sr]; in kernels only."""
+    raise NotImplementedError("runs inside kernels only")
+
+
+def _scattered_closed(
+    rng: np.random.Generator, lobe: Any, x: float, y: float, z: float, dx: float, dy: float, dz: float
+) -> Vector:
     if lobe.kind == ISOTROPIC:
         return uniform_direction(rng)
     xi = rng.random()
@@ -69,9 +87,7 @@ def scattered(rng: np.random.Generator, lobe: Lobe, dx: float, dy: float, dz: fl
     return about(dx, dy, dz, versine, coversine, cosine, sine)
 
 
-@inlined
-def phase_density(lobe: Lobe, mu: float) -> float:
-    """Return the phase function at a forward cosine [1/sr]."""
+def _density_closed(lobe: Any, x: float, y: float, z: float, mu: float) -> float:
     if lobe.kind == ISOTROPIC:
         return 0.25 / np.pi
     if lobe.kind == HENYEY_GREENSTEIN:
@@ -79,6 +95,87 @@ def phase_density(lobe: Lobe, mu: float) -> float:
         d = (1.0 - k) * (1.0 - k) + 2.0 * k * max(0.0, 1.0 - mu if lobe.g > 0.0 else 1.0 + mu)
         return (1.0 - k) * (1.0 + k) / (4.0 * np.pi * d * np.sqrt(d))
     return 3.0 / (16.0 * np.pi) * (1.0 + mu * mu)
+
+
+@inlined
+def cell_of(edges: np.ndarray, at: float) -> int:
+    """Return the cell between increasing edges that holds a number, the first or last if none does."""
+    low, high = 0, len(edges) - 1
+    while high - low > 1:
+        middle = (low + high) // 2
+        if edges[middle] <= at:
+            low = middle
+        else:
+            high = middle
+    return low
+
+
+def _scattered_table(
+    rng: np.random.Generator, lobe: Any, x: float, y: float, z: float, dx: float, dy: float, dz: float
+) -> Vector:
+    xi = rng.random()
+    i = cell_of(lobe.cdf, xi)
+    left, right = lobe.left[i], lobe.right[i]
+    # Of the cell's probability a share r lies before the place, s after it: the density there is root, and the place divides
+    # the cell in r/(left + root) and s/(right + root), no difference of close numbers in either.
+    mass = lobe.cdf[i + 1] - lobe.cdf[i]
+    r = (xi - lobe.cdf[i]) / mass if mass > 0.0 else 0.5
+    s = 1.0 - r
+    root = np.sqrt(s * left * left + r * right * right)
+    before = r * (left + right) / (left + root) if left + root > 0.0 else 0.0
+    after = s * (left + right) / (right + root) if right + root > 0.0 else 0.0
+    versine = lobe.versine[i] + before * (lobe.versine[i + 1] - lobe.versine[i])
+    coversine = lobe.coversine[i + 1] + after * (lobe.coversine[i] - lobe.coversine[i + 1])
+    cosine, sine = azimuth(rng)
+    return about(dx, dy, dz, versine, coversine, cosine, sine)
+
+
+def _density_table(lobe: Any, x: float, y: float, z: float, mu: float) -> float:
+    versine = max(0.0, 1.0 - mu)
+    i = cell_of(lobe.versine, versine)
+    width = lobe.versine[i + 1] - lobe.versine[i]
+    share = min((versine - lobe.versine[i]) / width, 1.0) if width > 0.0 else 1.0  # at the very back widths round to 0
+    return (1.0 - share) * lobe.left[i] + share * lobe.right[i]
+
+
+@inlined
+def share_of_second(lobe: BlendLobe, x: float, y: float, z: float) -> float:
+    """Return the share of the second lobe at a place."""
+    along = (x - lobe.start_x) * lobe.way_x + (y - lobe.start_y) * lobe.way_y + (z - lobe.start_z) * lobe.way_z
+    return min(max(along, 0.0), 1.0)
+
+
+def _scattered_blend(
+    rng: np.random.Generator, lobe: Any, x: float, y: float, z: float, dx: float, dy: float, dz: float
+) -> Vector:
+    if rng.random() < share_of_second(lobe, x, y, z):
+        return scattered(rng, lobe.second, x, y, z, dx, dy, dz)
+    return scattered(rng, lobe.first, x, y, z, dx, dy, dz)
+
+
+def _density_blend(lobe: Any, x: float, y: float, z: float, mu: float) -> float:
+    share = share_of_second(lobe, x, y, z)
+    first, second = phase_density(lobe.first, x, y, z, mu), phase_density(lobe.second, x, y, z, mu)
+    return (1.0 - share) * first + share * second
+
+
+_INLINED = {"forceinline": True, **KERNEL_OPTIONS}
+
+
+@overload(scattered, jit_options=_INLINED)
+def _choose_scattered(
+    rng: np.random.Generator, lobe: Any, x: float, y: float, z: float, dx: float, dy: float, dz: float
+) -> Any:
+    if lobe.instance_class is Lobe:
+        return _scattered_closed
+    return _scattered_blend if lobe.instance_class is BlendLobe else _scattered_table
+
+
+@overload(phase_density, jit_options=_INLINED)
+def _choose_density(lobe: Any, x: float, y: float, z: float, mu: float) -> Any:
+    if lobe.instance_class is Lobe:
+        return _density_closed
+    return _density_blend if lobe.instance_class is BlendLobe else _density_table
 
 
 @inlined

@@ -2,31 +2,30 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from fogproof.estimators.kernels.compiling import kernel
-from fogproof.estimators.kernels.path_data import Lobe
 from fogproof.estimators.kernels.scattering import scattered, uniform_direction
 
 
 @kernel
-def displacements(rng: np.random.Generator, lobe: Lobe, flights: int, moved: np.ndarray) -> None:
+def displacements(rng: np.random.Generator, lobe: Any, flights: int, moved: np.ndarray) -> None:
     """Write where walks that begin along +z are after a number of flights into moved (n, 3)."""
     for i in range(len(moved)):
         x, y, z = 0.0, 0.0, 0.0
         dx, dy, dz = 0.0, 0.0, 1.0
         for k in range(flights):
             if k > 0:
-                dx, dy, dz = scattered(rng, lobe, dx, dy, dz)
+                dx, dy, dz = scattered(rng, lobe, x, y, z, dx, dy, dz)
             t = rng.standard_exponential()
             x, y, z = x + t * dx, y + t * dy, z + t * dz
         moved[i, 0], moved[i, 1], moved[i, 2] = x, y, z
 
 
 @kernel
-def collisions_within(
-    rng: np.random.Generator, lobe: Lobe, albedo: float, radii: np.ndarray, count: np.ndarray
-) -> None:
+def collisions_within(rng: np.random.Generator, lobe: Any, albedo: float, radii: np.ndarray, count: np.ndarray) -> None:
     """Count the collisions of walks from the origin within balls about it; each collision ends one with 1 - albedo.
 
     radii  (balls,); count (n, balls)
@@ -45,7 +44,7 @@ def collisions_within(
                     count[i, k] += 1.0
             if rng.random() >= albedo:
                 break
-            dx, dy, dz = scattered(rng, lobe, dx, dy, dz)
+            dx, dy, dz = scattered(rng, lobe, x, y, z, dx, dy, dz)
 
 
 @kernel

@@ -12,7 +12,7 @@ from fogproof.estimators.kernels.data import BlockBound, Lattice, RayBound
 from fogproof.estimators.media import ROOM
 from fogproof.estimators.tracking.majorant_grid import MajorantGrid
 from fogproof.estimators.tracking.medium_data import medium_data
-from fogproof.scene import AnyMedium, HenyeyGreenstein, Isotropic, Rayleigh
+from fogproof.scene import AnyMedium
 from fogproof.scene.kinds import given
 from fogproof.scene.lights import Light
 from fogproof.scene.media import box
@@ -25,19 +25,6 @@ def region(shape: Shape) -> data.Region:
     """Return a shape for kernels."""
     made: data.Region = _given(shape, "shapes", "region", "shape")(shape)
     return made
-
-
-def lobe(phase: Any) -> data.Lobe:
-    """Return a phase function for kernels."""
-    match phase:
-        case Isotropic() | HenyeyGreenstein(g=0.0):
-            return data.Lobe(data.ISOTROPIC, 0.0)
-        case HenyeyGreenstein(g):
-            return data.Lobe(data.HENYEY_GREENSTEIN, g)
-        case Rayleigh():
-            return data.Lobe(data.RAYLEIGH, 0.0)
-    known = "isotropic, Henyey-Greenstein and Rayleigh scattering"
-    raise UnsupportedError(f"path tracing knows {known}, got {type(phase).__name__}", "medium.phase")
 
 
 def lamp(light: Light | None) -> data.Lamp:

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
 from fogproof.contracts import Draws
 from fogproof.errors import InvalidValueError, UnsupportedError
-from fogproof.estimators.kernels.path_data import Plan
+from fogproof.estimators.kernels.path_data import PathRules, PathScene
 from fogproof.estimators.media import ROOM
 from fogproof.estimators.paths import data as path_data
 from fogproof.estimators.paths.tracer import ENDLESS, trace, whole
+from fogproof.estimators.phase.functions import kernel_lobe
 from fogproof.estimators.tracking.majorant_grid import MajorantGrid
 from fogproof.scene import AnyMedium, Isotropic, PhaseFunction
 from fogproof.scene.kinds import given
@@ -36,7 +36,7 @@ class RandomFlights:
         from fogproof.estimators.kernels.walks import displacements
 
         moved = np.empty((n, 3))
-        displacements(rng, path_data.lobe(self.phase), self.flights, moved)
+        displacements(rng, kernel_lobe(self.phase), self.flights, moved)
         return Draws(np.stack([moved[:, 2], np.sum(moved * moved, axis=1)], axis=1), np.full(n, float(self.flights)))
 
 
@@ -62,7 +62,7 @@ class PointSourceWalks:
         from fogproof.estimators.kernels.walks import collisions_within
 
         count = np.empty((n, len(self.radii)))
-        collisions_within(rng, path_data.lobe(self.phase), self.albedo, np.array(self.radii, dtype=float), count)
+        collisions_within(rng, kernel_lobe(self.phase), self.albedo, np.array(self.radii, dtype=float), count)
         return Draws(count)
 
 
@@ -107,13 +107,14 @@ class ScatteringsUnderUniformSky:
     majorant: float | MajorantGrid | None = None
 
     @cached_property
-    def _scene(self) -> tuple[Any, ...]:
-        plan = Plan(1.0, 0.0, 1.0, False, True, ENDLESS, -1.0, ENDLESS, 1.0, ENDLESS)
+    def _scene(self) -> PathScene:
+        rules = PathRules(1.0, 0.0, 1.0, False, True, ENDLESS, -1.0, ENDLESS, 1.0, ENDLESS)
         scattering = given(self.medium, ROOM, "without_absorption")
         medium = self.medium if scattering is None else scattering(self.medium)
         data, bound = path_data.medium_and_bound(medium, self.shape, self.majorant)
-        lobe = path_data.lobe(self.medium.phase)
-        return data, bound, path_data.region(self.shape), lobe, path_data.lamp(None), path_data.wall(None), plan
+        lobe = kernel_lobe(self.medium.phase)
+        region = path_data.region(self.shape)
+        return PathScene(data, bound, region, lobe, path_data.lamp(None), path_data.wall(None), rules)
 
     def draw(self, rng: np.random.Generator, n: int) -> Draws:
         """Return n realisations of the number of scatterings (n,)."""

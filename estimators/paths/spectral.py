@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
 from fogproof.contracts import Draws
 from fogproof.errors import UnsupportedError
-from fogproof.estimators.kernels.path_data import Plan
+from fogproof.estimators.kernels.path_data import Colours, PathRows, PathRules, PathScene
 from fogproof.estimators.paths import data as path_data
-from fogproof.estimators.paths.tracer import ENDLESS, Gathering, Paths, Roulette, choose_gathering, run
+from fogproof.estimators.paths.tracer import ENDLESS, LightSampling, Roulette, choose_light_sampling, run
+from fogproof.estimators.phase.functions import kernel_lobe
 from fogproof.estimators.tracking.majorant_grid import MajorantGrid
 from fogproof.estimators.tracking.tracked import single
 from fogproof.scene import AnyMedium, Ray
@@ -34,7 +34,7 @@ class SpectralPathTracer:
     ray: Ray
     light: Light | None = None
     surface: Surface | None = None
-    gathering: Gathering | None = None
+    light_sampling: LightSampling | None = None
     deepest: int | None = None
     roulette: Roulette | None = field(default_factory=Roulette)
     events: int = 1_000_000
@@ -42,7 +42,7 @@ class SpectralPathTracer:
 
     def __post_init__(self) -> None:
         single(self.ray)
-        choose_gathering(self.gathering, self.light, self.surface, 1.0)
+        choose_light_sampling(self.light_sampling, self.light, self.surface, 1.0)
         if self.channels == 0:
             raise UnsupportedError("neither medium nor light have channels; use PathTracer", "medium")
 
@@ -53,18 +53,19 @@ class SpectralPathTracer:
         return channel_count(medium=medium, light=0.0 if self.light is None else strength(self.light)) or 0
 
     @cached_property
-    def _scene(self) -> tuple[Any, ...]:
+    def _scene(self) -> tuple[PathScene, Colours]:
         """Everything but the ray, for the kernel."""
-        how = choose_gathering(self.gathering, self.light, self.surface, 1.0)
+        how = choose_light_sampling(self.light_sampling, self.light, self.surface, 1.0)
         roulette, deepest = self.roulette or Roulette(ENDLESS, 1.0), ENDLESS if self.deepest is None else self.deepest
-        look, meet = how != "met", how != "looked for"
-        plan = Plan(1.0, 0.0, 1.0, look, meet, deepest, -1.0, roulette.start, roulette.survival, self.events)
-        lobe, wall = path_data.lobe(self.medium.phase), path_data.wall(self.surface)
+        look, meet = how != "bsdf", how != "nee"
+        rules = PathRules(1.0, 0.0, 1.0, look, meet, deepest, -1.0, roulette.start, roulette.survival, self.events)
+        lobe, wall = kernel_lobe(self.medium.phase), path_data.wall(self.surface)
         albedo, emission = (self._constant(name) for name in ("albedo", "emission"))
         colour = np.array(np.broadcast_to(0.0 if self.light is None else strength(self.light), self.channels))
         lamp = path_data.lamp(None if self.light is None else with_strength(self.light, 1.0))
         medium, bound = path_data.medium_and_bound(self.medium, self.shape, self.majorant, self.channels)
-        return medium, bound, path_data.region(self.shape), lobe, lamp, wall, plan, albedo, emission, colour
+        region = path_data.region(self.shape)
+        return PathScene(medium, bound, region, lobe, lamp, wall, rules), Colours(albedo, emission, colour)
 
     def _constant(self, name: str) -> np.ndarray:
         value = getattr(self.medium, name)
@@ -72,7 +73,7 @@ class SpectralPathTracer:
             raise UnsupportedError(f"the {name} must be the same everywhere", "medium")
         return np.array(np.broadcast_to(np.asarray(value, dtype=float), self.channels))
 
-    def paths(self, rng: np.random.Generator, n: int) -> Paths:
+    def paths(self, rng: np.random.Generator, n: int) -> PathRows:
         """Follow n paths; the columns of their values are the channels."""
         from fogproof.estimators.kernels.spectral_paths import trace_in_colour
 

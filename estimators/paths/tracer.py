@@ -8,15 +8,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Literal, NamedTuple, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 
 from fogproof.contracts import Draws
 from fogproof.errors import InvalidValueError, UnsupportedError
 from fogproof.estimators.free_paths.fog import everywhere
-from fogproof.estimators.kernels.path_data import Plan
+from fogproof.estimators.kernels.path_data import PathRows, PathRules, PathScene
 from fogproof.estimators.paths import data as path_data
+from fogproof.estimators.phase.functions import kernel_lobe
 from fogproof.estimators.tracking.majorant_grid import MajorantGrid
 from fogproof.estimators.tracking.tracked import refuse, single
 from fogproof.scene import AnyMedium, Ray
@@ -25,8 +26,9 @@ from fogproof.scene.shapes import Shape
 from fogproof.scene.surfaces import Surface
 from fogproof.validate import number
 
-Gathering = Literal["met", "looked for", "both"]
-"""How light is gathered: where paths meet it, by looking for it at every collision (next-event estimation), or by both."""
+LightSampling = Literal["nee", "bsdf", "mis"]
+"""How light is gathered: by looking for it at every collision and reflection (next-event estimation), where paths meet it in the
+directions that phase function and surface give them, or by both with the balance heuristic (multiple importance sampling)."""
 
 ENDLESS = 1 << 62
 
@@ -48,33 +50,17 @@ class Roulette:
             raise InvalidValueError("survival", "must lie in (0, 1]", self.survival)
 
 
-class Paths(NamedTuple):
-    """One path a row.
-
-    value        (n, columns) radiance [W/(m^2 sr)] by the number of collisions on its way, the last column with all beyond
-    cost         (n,) look-ups of the medium, those of shadow rays included
-    scatterings  (n,) collisions
-    cut          (n,) throughput left in paths that were cut; its mean times the brightest radiance there is bounds the bias
-    """
-
-    value: np.ndarray
-    cost: np.ndarray
-    scatterings: np.ndarray
-    cut: np.ndarray
-
-
 @dataclass(frozen=True, eq=False)
 class PathTracer:
     """Radiance along one ray [W/(m^2 sr)]; everything grey.
 
-    medium            fills `shape`; albedo and emission the same everywhere, phase function isotropic, Henyey-Greenstein or
-                      Rayleigh. Media with bounds of their own end there as well
+    medium            fills `shape`; albedo and emission the same everywhere, any phase function (one that varies in space by
+                      a `Ramp`). Media with bounds of their own end there as well
     shape             convex, with vacuum outside
     ray               away from the camera, which may be inside; its length is not used
     light             a point or directional light, or an environment; None for none
     surface           opaque, in or behind the medium, not in touch with its boundary if that refracts
-    gathering         None: "looked for" with a point or directional light, "both" with an environment, "met" if the boundary
-                      refracts
+    light_sampling    None: "nee" with a point or directional light, "mis" with an environment, "bsdf" if the boundary refracts
     refractive_index  of the medium; other than 1 its boundary reflects and refracts, and light has to be met; what the medium
                       emits is then its radiance over index^2, which is the same on both sides of the boundary
     ambient           in-scattered radiance that a collision takes as constant instead of following it
@@ -90,7 +76,7 @@ class PathTracer:
     ray: Ray
     light: Light | None = None
     surface: Surface | None = None
-    gathering: Gathering | None = None
+    light_sampling: LightSampling | None = None
     refractive_index: float = 1.0
     ambient: float | None = None
     deepest: int | None = None
@@ -108,20 +94,20 @@ class PathTracer:
             whole("deepest", self.deepest, 0)
         if self.ambient is not None:
             number("ambient", self.ambient, "must be finite and >= 0 [W/(m^2 sr)]", 0)
-        choose_gathering(self.gathering, self.light, self.surface, self.refractive_index)
+        choose_light_sampling(self.light_sampling, self.light, self.surface, self.refractive_index)
 
     @cached_property
-    def _scene(self) -> tuple[Any, ...]:
+    def _scene(self) -> PathScene:
         """Everything but the ray, for the kernel."""
-        how = choose_gathering(self.gathering, self.light, self.surface, self.refractive_index)
+        how = choose_light_sampling(self.light_sampling, self.light, self.surface, self.refractive_index)
         albedo, emission = everywhere(self.medium)
         roulette = self.roulette or Roulette(ENDLESS, 1.0)
-        plan = Plan(
+        rules = PathRules(
             albedo,
             emission,
             self.refractive_index,
-            how != "met",
-            how != "looked for",
+            how != "bsdf",
+            how != "nee",
             ENDLESS if self.deepest is None else self.deepest,
             -1.0 if self.ambient is None else self.ambient,
             roulette.start,
@@ -129,10 +115,10 @@ class PathTracer:
             self.events,
         )
         medium, bound = path_data.medium_and_bound(self.medium, self.shape, self.majorant)
-        lobe, lamp, wall = path_data.lobe(self.medium.phase), path_data.lamp(self.light), path_data.wall(self.surface)
-        return medium, bound, path_data.region(self.shape), lobe, lamp, wall, plan
+        lobe, lamp, wall = kernel_lobe(self.medium.phase), path_data.lamp(self.light), path_data.wall(self.surface)
+        return PathScene(medium, bound, path_data.region(self.shape), lobe, lamp, wall, rules)
 
-    def paths(self, rng: np.random.Generator, n: int) -> Paths:
+    def paths(self, rng: np.random.Generator, n: int) -> PathRows:
         """Follow n paths."""
         return trace(self._scene, self.ray.origin[None], self.ray.direction[None], rng, n, self.columns)
 
@@ -143,12 +129,12 @@ class PathTracer:
 
 
 def trace(
-    scene: tuple[Any, ...], origin: np.ndarray, direction: np.ndarray, rng: np.random.Generator, n: int, columns: int
-) -> Paths:
+    scene: PathScene, origin: np.ndarray, direction: np.ndarray, rng: np.random.Generator, n: int, columns: int
+) -> PathRows:
     """Follow n paths from rays (1, 3) or (n, 3) through a scene made ready for the kernel."""
     from fogproof.estimators.kernels import paths as kernel_paths
 
-    return run(kernel_paths.trace, scene, origin, direction, rng, n, columns)
+    return run(kernel_paths.trace, (scene,), origin, direction, rng, n, columns)
 
 
 def run(
@@ -159,34 +145,35 @@ def run(
     rng: np.random.Generator,
     n: int,
     columns: int,
-) -> Paths:
+) -> PathRows:
     """Run a path tracing kernel, and raise if it met an extinction that its bound does not allow."""
     from fogproof.estimators.kernels.compiling import uncached
 
-    paths = Paths(np.empty((n, columns)), np.empty(n), np.empty(n, np.int64), np.empty(n))
-    if getattr(scene[0], "of_user", False):
+    rows = PathRows(np.empty((n, columns)), np.empty(n), np.empty(n, np.int64), np.empty(n))
+    if getattr(scene[0].medium, "of_user", False):
         kernel = uncached(kernel)
-    refuse(*kernel(rng, *scene, np.array(origin), np.array(direction), *paths))
-    return paths
+    refuse(*kernel(rng, *scene, np.array(origin), np.array(direction), rows))
+    return rows
 
 
-def choose_gathering(
-    gathering: Any, light: Light | None, surface: Surface | None, refractive_index: float
-) -> Gathering:
+def choose_light_sampling(
+    light_sampling: Any, light: Light | None, surface: Surface | None, refractive_index: float
+) -> LightSampling:
     """Return how light is gathered, or say why it cannot be as asked."""
-    if gathering not in (None, *get_args(Gathering)):
-        raise InvalidValueError("gathering", f"must be one of {', '.join(get_args(Gathering))}", gathering)
+    if light_sampling not in (None, *get_args(LightSampling)):
+        rule = f"must be one of {', '.join(get_args(LightSampling))}"
+        raise InvalidValueError("light_sampling", rule, light_sampling)
     refracts = refractive_index != 1
     if light is not None and light.delta:
-        if gathering not in (None, "looked for"):
-            raise InvalidValueError("gathering", "must be 'looked for': paths never meet such a light", gathering)
+        if light_sampling not in (None, "nee"):
+            raise InvalidValueError("light_sampling", "must be 'nee': paths never meet such a light", light_sampling)
         if refracts or (surface is not None and surface.finish == "mirror" and surface.albedo > 0):
             what = "light behind a mirror or a refracting boundary cannot be looked for"
             raise UnsupportedError(f"{what}; use an Environment", "light")
-        return "looked for"
-    if refracts and gathering not in (None, "met"):
-        raise InvalidValueError("gathering", "must be 'met' behind a refracting boundary", gathering)
-    return gathering or ("both" if light is not None and not refracts else "met")
+        return "nee"
+    if refracts and light_sampling not in (None, "bsdf"):
+        raise InvalidValueError("light_sampling", "must be 'bsdf' behind a refracting boundary", light_sampling)
+    return light_sampling or ("mis" if light is not None and not refracts else "bsdf")
 
 
 def whole(name: str, value: Any, least: int) -> None:

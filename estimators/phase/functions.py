@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from fogproof.estimators.kernels.path_data import AnyLobe
 from fogproof.estimators.phase import weighted
 from fogproof.estimators.phase.kinds import ROOM, formula, weighted_parts
 from fogproof.estimators.phase.polar import Polar
 from fogproof.scene.kinds import given
-from fogproof.scene.phase import PhaseFunction
+from fogproof.scene.phase import AnyPhase, PhaseFunction
 
 
 def phase_value(phase: PhaseFunction, mu: np.ndarray) -> np.ndarray:
@@ -47,3 +48,16 @@ def phase_table(phase: PhaseFunction) -> PhaseFunction:
     table = given(phase, ROOM, "table")
     sampled: PhaseFunction = phase if table is None else table(phase)
     return sampled
+
+
+def kernel_lobe(phase: AnyPhase) -> AnyLobe:
+    """Return a phase function for compiled kernels: its own closed form, or a table of its density (see `tabulated_lobe`)."""
+    own = given(phase, ROOM, "lobe")
+    lobe: AnyLobe
+    if own is not None:
+        lobe = own(phase)
+    else:
+        from fogproof.estimators.phase.tabulated_lobe import tabulated_lobe
+
+        lobe = tabulated_lobe(phase).lobe
+    return lobe

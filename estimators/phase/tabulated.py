@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from fogproof.estimators.kernels.path_data import TableLobe
 from fogproof.estimators.phase.polar import Polar
 from fogproof.scene import Tabulated
 
@@ -55,3 +56,11 @@ def polar(phase: Tabulated, xi: np.ndarray) -> Polar:
 def _share(part: np.ndarray, whole: np.ndarray) -> np.ndarray:
     """Return part / whole, 0 where both vanish: at the very end of a cell that begins with density 0."""
     return np.divide(part, whole, out=np.zeros_like(part), where=whole > 0)
+
+
+def lobe(phase: Tabulated) -> TableLobe:
+    """Return it for compiled kernels, exactly."""
+    c, f, cdf = _cells(phase)
+    return TableLobe(
+        (1 - c)[::-1].copy(), (1 + c)[::-1].copy(), (1 - cdf)[::-1].copy(), f[:0:-1].copy(), f[-2::-1].copy()
+    )

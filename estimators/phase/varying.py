@@ -1,11 +1,24 @@
-"""Phase functions that may vary in space."""
+"""Phase functions that vary in space: a blend, for compiled kernels and at points."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from fogproof.estimators.phase.functions import phase_value
+from fogproof.errors import UnsupportedError
+from fogproof.estimators.kernels.path_data import BlendLobe
+from fogproof.estimators.phase.functions import kernel_lobe, phase_value
 from fogproof.scene.phase import AnyPhase, PhaseFunction, Ramp, VaryingPhase
+
+
+def lobe(phase: VaryingPhase) -> BlendLobe:
+    """Return it for compiled kernels."""
+    if not isinstance(phase.share, Ramp):
+        raise UnsupportedError(
+            "a share that is a Python function cannot enter a compiled kernel; give a Ramp", "medium.phase"
+        )
+    way = phase.share.end - phase.share.start
+    way = way / np.sum(way * way)
+    return BlendLobe(kernel_lobe(phase.first), kernel_lobe(phase.second), *phase.share.start.tolist(), *way.tolist())
 
 
 def phase_value_at(phase: AnyPhase, x: np.ndarray, mu: np.ndarray) -> np.ndarray:

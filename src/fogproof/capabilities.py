@@ -122,7 +122,7 @@ def _refused(scene: Scene, how: Capabilities) -> str:
     if lit:
         assert scene.light is not None
         kind = type(scene.light).__name__
-        if given(scene.light, LIGHTS, "illumination") is None:
+        if not (given(scene.light, LIGHTS, "illumination") or given(scene.light, LIGHTS, "sample")):
             return f"the light of a {kind} arrives from everywhere, which is followed in a homogeneous Medium in a shape only"
         if how.shadow_rays == "ratio" and scene.light.distant and not bounded:
             return f"the way of a {kind}'s light through a {name} without end: give the medium bounds"

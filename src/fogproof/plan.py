@@ -71,10 +71,10 @@ def plan(scene: Scene) -> Plan:
     if lit and how.placing == "equiangular":
         integral = (
             "the airlight integral has no elementary form but converges fast after t = h sinh s"
-            if how.uniform
+            if how.uniform and scene.light is not None and scene.light.delta
             else "nested adaptive quadrature, the transmittance of both legs by the medium's own rule"
         )
-        why = f"{integral}; equiangular sampling cancels the light's 1/r^2"
+        why = f"{integral}; equiangular sampling about the light cancels its 1/r^2"
         return Plan(terms, "single_scattering", f"Airlight, placing 'equiangular'; {through}", why)
     if lit:
         why = "parallel light: no 1/r^2 is in the way, the event goes where the medium is"

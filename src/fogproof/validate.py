@@ -87,7 +87,8 @@ def unit_vectors(name: str, value: Any) -> np.ndarray:
     that is off by rounding alone, 4 eps, stays as it is: to normalise twice would move it.
     """
     array = points(name, value)
-    length = np.sqrt(np.sum(array * array, axis=-1))
+    with np.errstate(over="ignore", under="ignore"):  # a length of inf or 0 is no unit either
+        length = np.sqrt(np.sum(array * array, axis=-1))
     require(name, length, np.abs(length - 1) < 1e-6, "must have unit length", "divide it by its length")
     rounded = np.abs(length[..., None] - 1) <= 4 * np.finfo(np.float64).eps
     array = np.where(rounded, array, array / length[..., None])

@@ -127,7 +127,7 @@ WRONG = {
     "albedo": ("weights", {"albedo": 0.31}, "albedo"),
     "cdf": ("square, skewed", {"cdf": lambda x: x}, "chi-square, joint"),
     "given up": (
-        "interval", {"sample": lambda u: _draw(2 + 3 * u[:, 0], valid=u[:, 0] > 0.05)}, "continuous part"),
+        "interval", {"sample": lambda u: _draw(2 + 3 * u[:, 0], valid=u[:, 0] > 0.05)}, "scan"),
 }  # fmt: skip
 
 

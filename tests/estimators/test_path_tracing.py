@@ -43,6 +43,7 @@ from fogproof.scene import (
     Procedural,
     Ray,
     Rayleigh,
+    VaryingPhase,
     VoxelGrid,
 )
 from fogproof.scene.lights import DirectionalLight, Environment, PointLight, SpotLight
@@ -57,6 +58,7 @@ SLAB, BALL = Slab((0, 0, 0), UP, 1.0), Ball((0, 0, 0), 1.0)
 BOX = Box((-1, -1, -1), (1, 1, 1))
 SKY, BLACK = Environment(1.0), Surface(Plane((0, 0, -2), UP))
 FOG = Medium(0.1, 0.9)
+UNKNOWN = VaryingPhase(Hazy(), Rayleigh(), lambda x: 0.5 + 0 * x[..., 0])
 ABOVE, ASIDE = Ray((0, 0, 3), (np.sqrt(0.75), 0, -0.5)), Ray((0.3, 0, 3), (0, 0, -1))
 ONE = Reference(np.asarray(1.0), np.asarray(0.0), "", "")
 
@@ -126,7 +128,7 @@ FURNACES = {
 def test_every_path_that_only_meets_light_sees_one_in_a_furnace(name):
     """Without roulette there is no variance: what was absorbed on the way has been made up for by emission."""
     args, more = FURNACES[name]
-    value = PathTracer(*args, **more, gathering="met", roulette=None).draw(np.random.default_rng(1), 5000).value
+    value = PathTracer(*args, **more, light_sampling="bsdf", roulette=None).draw(np.random.default_rng(1), 5000).value
     assert np.abs(value - 1).max() <= 1e-12
 
 
@@ -160,7 +162,7 @@ def test_any_furnace(shape, surface, index, eye, direction, albedo, g):
         surface = None  # it might touch the boundary
     medium = Medium(3 * (1 - albedo), 3 * albedo, HenyeyGreenstein(0.99 * g), emission=1.0)
     tracer = PathTracer(
-        medium, shape, Ray(eye, direction), SKY, surface, "met", refractive_index=index, roulette=None, events=500
+        medium, shape, Ray(eye, direction), SKY, surface, "bsdf", refractive_index=index, roulette=None, events=500
     )
     paths = tracer.paths(np.random.default_rng(fresh_seed()), 50)
     assert np.abs(paths.value[:, 0] + paths.cut - 1).max() <= 1e-12
@@ -169,7 +171,7 @@ def test_any_furnace(shape, surface, index, eye, direction, albedo, g):
 SUN, LAMP = DirectionalLight((0, 0, -1), 1.0), PointLight((0, 2, 0), 1.0)
 BLUE = Medium(0.1, 0.9, Rayleigh())
 SLABS = {
-    "met": lambda: (PathTracer(FOG, SLAB, ABOVE, SKY, BLACK, "met"), slab_reflectance(0.9, 1.0, 0.5)),
+    "bsdf": lambda: (PathTracer(FOG, SLAB, ABOVE, SKY, BLACK, "bsdf"), slab_reflectance(0.9, 1.0, 0.5)),
     "no roulette": lambda: (
         PathTracer(FOG, SLAB, ABOVE, SKY, BLACK, roulette=None),
         slab_reflectance(0.9, 1.0, 0.5),
@@ -270,12 +272,12 @@ def test_a_users_function_is_a_medium():
 
 COLOURS = Medium((0.1, 0.2, 0.05), (0.4, 1.0, 2.0))
 SPECTRAL = {
-    "met": lambda: (
-        SpectralPathTracer(COLOURS, SLAB, ABOVE, SKY, BLACK, "met"),
+    "bsdf": lambda: (
+        SpectralPathTracer(COLOURS, SLAB, ABOVE, SKY, BLACK, "bsdf"),
         slab_reflectance(COLOURS.albedo, COLOURS.sigma_t, 0.5),
     ),
-    "looked for": lambda: (
-        SpectralPathTracer(COLOURS, SLAB, ABOVE, SKY, BLACK, "looked for", roulette=Roulette(1, 0.95)),
+    "nee": lambda: (
+        SpectralPathTracer(COLOURS, SLAB, ABOVE, SKY, BLACK, "nee", roulette=Roulette(1, 0.95)),
         slab_reflectance(COLOURS.albedo, COLOURS.sigma_t, 0.5),
     ),
     "coloured light": lambda: (
@@ -304,7 +306,7 @@ def test_colours(name):
 @pytest.mark.parametrize("surface", [None, Surface(Sphere((0, 0, 0), 0.5), 0.4, "lambert", 0.6)])
 @pytest.mark.parametrize("medium", [Medium(0.0, (0.1, 1.0, 30.0)), voxels((3,))])
 def test_the_channels_of_a_path_in_a_white_furnace_have_one_as_their_mean(medium, surface):
-    tracer = SpectralPathTracer(medium, BALL, ASIDE, SKY, surface, "met", roulette=None)
+    tracer = SpectralPathTracer(medium, BALL, ASIDE, SKY, surface, "bsdf", roulette=None)
     value = tracer.draw(np.random.default_rng(2), 20_000).value
     assert np.abs(value.mean(axis=1) - 1).max() <= 1e-12
     assert value.min() >= 0
@@ -348,7 +350,9 @@ EXTREMES = {
 @settings(max_examples=60, deadline=None)
 def test_at_extremes_each_path_and_what_was_cut_of_it_make_the_furnace_whole(albedo, tau, g, index):
     medium = Medium(tau * (1 - albedo), tau * albedo, HenyeyGreenstein(g), emission=1.0)
-    tracer = PathTracer(medium, SLAB, ABOVE, SKY, gathering="met", refractive_index=index, roulette=None, events=2000)
+    tracer = PathTracer(
+        medium, SLAB, ABOVE, SKY, light_sampling="bsdf", refractive_index=index, roulette=None, events=2000
+    )
     paths = tracer.paths(np.random.default_rng(fresh_seed()), 50)
     assert np.abs(paths.value[:, 0] + paths.cut - 1).max() <= 1e-11
 
@@ -358,7 +362,7 @@ def test_at_extremes_each_path_and_what_was_cut_of_it_make_the_furnace_whole(alb
 def test_extremes_with_everything_else_stay_finite(albedo, tau, g, index):
     medium = Medium(tau * (1 - albedo), tau * albedo, HenyeyGreenstein(g), emission=1.0)
     rng = np.random.default_rng(fresh_seed())
-    for how in ({"refractive_index": index}, {"gathering": "both"}, {"gathering": "looked for"}):
+    for how in ({"refractive_index": index}, {"light_sampling": "mis"}, {"light_sampling": "nee"}):
         paths = PathTracer(medium, SLAB, ABOVE, SKY, BLACK, **how, events=2000).paths(rng, 30)
         assert np.isfinite(paths.value).all()
         assert paths.value.min() >= 0
@@ -382,7 +386,7 @@ def test_hard_slabs_are_unbiased_but_for_what_is_cut(name):
     """Values lie in [0, 1]: the bounds are Maurer & Pontil's (2009), which hold for every law."""
     albedo, tau, g, index, n, events = HARD[name]
     medium = Medium(tau * (1 - albedo), tau * albedo, HenyeyGreenstein(g))
-    tracer = PathTracer(medium, SLAB, ABOVE, SKY, BLACK, "met", refractive_index=index, roulette=None, events=events)
+    tracer = PathTracer(medium, SLAB, ABOVE, SKY, BLACK, "bsdf", refractive_index=index, roulette=None, events=events)
     seed = fresh_seed()
     paths = tracer.paths(np.random.default_rng(seed), n)
     exact = slab_reflectance(albedo, tau, 0.5, HenyeyGreenstein(g) if g else None, index)
@@ -399,7 +403,7 @@ def reach(x):
 
 
 def test_survivors_of_the_roulette_weigh_that_much_more():
-    tracer = PathTracer(unit(), BALL, ASIDE, SKY, gathering="met", roulette=Roulette(1, 0.5))
+    tracer = PathTracer(unit(), BALL, ASIDE, SKY, light_sampling="bsdf", roulette=Roulette(1, 0.5))
     value, _, scatterings, _ = tracer.paths(np.random.default_rng(5), 5000)
     left = value[:, 0] > 0
     assert np.array_equal(value[left, 0], 2.0 ** scatterings[left])
@@ -407,7 +411,7 @@ def test_survivors_of_the_roulette_weigh_that_much_more():
 
 
 def test_what_is_cut_is_told():
-    tracer = PathTracer(unit(), Ball((0, 0, 0), 3.0), ASIDE, SKY, gathering="met", roulette=None, events=5)
+    tracer = PathTracer(unit(), Ball((0, 0, 0), 3.0), ASIDE, SKY, light_sampling="bsdf", roulette=None, events=5)
     paths = tracer.paths(np.random.default_rng(5), 20_000)
     assert set(np.unique(paths.cut)) == {0.0, 1.0}
     # Cut paths would have seen the furnace's 1 as well: value and cut make it whole.
@@ -418,7 +422,7 @@ def test_what_is_cut_is_told():
 def test_batches_do_not_prefer_short_paths():
     """What a path is worth depends on the paths before it alone: neither on how many follow, nor on which end first."""
     for tracer in (
-        PathTracer(FOG, SLAB, ABOVE, SKY, BLACK, "met", roulette=None),
+        PathTracer(FOG, SLAB, ABOVE, SKY, BLACK, "bsdf", roulette=None),
         PathTracer(FOG, BALL, ASIDE, PointLight((0, 2, 0), 1.0), columns=4),
         SpectralPathTracer(COLOURS, SLAB, ABOVE, SKY, BLACK),
     ):
@@ -439,7 +443,7 @@ def test_workers_do_not_change_a_bit():
 
 SQUARES = {
     "slab, forward": lambda: (
-        PathTracer(Medium(0.1, 0.9, HenyeyGreenstein(0.6)), SLAB, ABOVE, SKY, BLACK, "met", roulette=None),
+        PathTracer(Medium(0.1, 0.9, HenyeyGreenstein(0.6)), SLAB, ABOVE, SKY, BLACK, "bsdf", roulette=None),
         [slab_reflectance(c, 1.0, 0.5, HenyeyGreenstein(0.6)) for c in (0.9, 0.9**2)],
     ),
     "glass": lambda: (
@@ -451,11 +455,13 @@ SQUARES = {
         [slab_transmittance(c, 1.0, 0.5) for c in (0.9, 0.9**2)],
     ),
     "half space": lambda: (
-        PathTracer(Medium(0.2, 0.8), HalfSpace((0, 0, 0), UP), ABOVE, SKY, gathering="met", deepest=200, roulette=None),
+        PathTracer(
+            Medium(0.2, 0.8), HalfSpace((0, 0, 0), UP), ABOVE, SKY, light_sampling="bsdf", deepest=200, roulette=None
+        ),
         [half_space_reflectance(c, 0.5) for c in (0.8, 0.8**2)],
     ),
     "ball": lambda: (
-        PathTracer(Medium(1.0, 3.0), BALL, ASIDE, SKY, gathering="met", roulette=None),
+        PathTracer(Medium(1.0, 3.0), BALL, ASIDE, SKY, light_sampling="bsdf", roulette=None),
         [ball_radiance(c, 4.0, 1.2) for c in (0.75, 0.75**2)],
     ),
 }
@@ -482,11 +488,11 @@ ORDERS = {
         slab_transmittance_orders(1.0, 0.5, 5),
     ),
     "half space": lambda: (
-        PathTracer(Medium(0.0, 1.0), HalfSpace((0, 0, 0), UP), ABOVE, SKY, columns=6, deepest=5, gathering="looked for"),
+        PathTracer(Medium(0.0, 1.0), HalfSpace((0, 0, 0), UP), ABOVE, SKY, columns=6, deepest=5, light_sampling="nee"),
         half_space_reflectance_orders(0.5, 5),
     ),
     "ball": lambda: (
-        PathTracer(Medium(0.0, 2.0), BALL, ASIDE, SKY, columns=6, deepest=5, gathering="met"),
+        PathTracer(Medium(0.0, 2.0), BALL, ASIDE, SKY, columns=6, deepest=5, light_sampling="bsdf"),
         ball_radiance_orders(2.0, 0.6, 5),
     ),
 }  # fmt: skip
@@ -513,11 +519,15 @@ MIRROR = Surface(Plane((0, 0, -2), UP), 0.5, "mirror")
 @pytest.mark.parametrize(
     ("make", "error", "words"),
     [
-        (lambda: PathTracer(FOG, BALL, ASIDE, LAMP, gathering="both"), InvalidValueError, "looked for"),
+        (lambda: PathTracer(FOG, BALL, ASIDE, LAMP, light_sampling="mis"), InvalidValueError, "nee"),
         (lambda: PathTracer(FOG, BALL, ASIDE, SUN, refractive_index=1.5), UnsupportedError, "Environment"),
         (lambda: PathTracer(FOG, BALL, ASIDE, SUN, MIRROR), UnsupportedError, "mirror"),
-        (lambda: PathTracer(FOG, BALL, ASIDE, SKY, gathering="both", refractive_index=2.0), InvalidValueError, "met"),
-        (lambda: PathTracer(FOG, BALL, ASIDE, SKY, gathering="guessed"), InvalidValueError, "gathering"),
+        (
+            lambda: PathTracer(FOG, BALL, ASIDE, SKY, light_sampling="mis", refractive_index=2.0),
+            InvalidValueError,
+            "bsdf",
+        ),
+        (lambda: PathTracer(FOG, BALL, ASIDE, SKY, light_sampling="guessed"), InvalidValueError, "light_sampling"),
         (lambda: PathTracer(FOG, BALL, ASIDE, columns=0), InvalidValueError, "columns"),
         (lambda: PathTracer(FOG, BALL, ASIDE, deepest=-1), InvalidValueError, "deepest"),
         (lambda: PathTracer(FOG, BALL, ASIDE, events=0), InvalidValueError, "events"),
@@ -539,7 +549,7 @@ def test_bad_arguments_are_named(make, error, words):
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (lambda: PathTracer(Medium(0.1, 0.9, Hazy()), BALL, ASIDE, SKY), "Hazy"),
+        (lambda: PathTracer(LinearMedium(1.0, (0, 0, 0), phase=UNKNOWN), BALL, ASIDE, SKY), "share .* Ramp"),
         (lambda: PathTracer(FOG, BALL, ASIDE, SpotLight((0, 2, 0), (0, -1, 0), 1.0, 0.5)), "SpotLight"),
         (lambda: PathTracer(COLOURS, BALL, ASIDE, SKY), "channels"),
         (lambda: PathTracer(LinearMedium(1.0, (1, 0, 0)), SLAB, ABOVE, SKY), "bounded"),

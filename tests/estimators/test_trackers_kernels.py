@@ -6,6 +6,7 @@ import os
 import shutil
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ import pytest
 
 import fogproof
 from fogproof.estimators.kernels import compiling as kernels
+from fogproof.estimators.kernels.cache_files import prune
 
 PACKAGE = Path(fogproof.__file__).parent
 
@@ -101,3 +103,36 @@ def test_users_functions_are_compiled_in_memory_once() -> None:
     assert plain is kernels.uncached(kernel_tracking.look_up)
     assert hasattr(kernel_tracking.look_up._cache, "_cache_path")
     assert not hasattr(plain._cache, "_cache_path")
+
+
+def test_damaged_code_is_compiled_again(tmp_path: Path) -> None:
+    first, _ = run(TRANSMITTANCE, PACKAGE.parent, tmp_path).split()
+    (folder,) = (tmp_path / "fogproof").iterdir()
+    files = sorted(folder.glob("*.kernel"))
+    assert files
+    for number, file in enumerate(files):
+        data = bytearray(file.read_bytes())
+        data[len(data) * (number + 1) // (len(files) + 2)] ^= 4
+        file.write_bytes(data if number else data[: len(data) // 2])
+    again, hits = run(TRANSMITTANCE, PACKAGE.parent, tmp_path).split()
+    assert (again, hits) == (first, "0")
+    assert run(TRANSMITTANCE, PACKAGE.parent, tmp_path).split() == [first, "1"]
+
+
+def test_a_disk_that_is_full_keeps_no_code_and_stops_nothing(tmp_path: Path) -> None:
+    small = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))\n"
+    value, hits = run(small + TRANSMITTANCE, PACKAGE.parent, tmp_path).split()
+    assert 0 < float(value) < 1
+    assert hits == "0"
+    assert not [file for file in tmp_path.rglob("*") if file.is_file()]
+
+
+def test_folders_of_gone_sources_are_removed(tmp_path: Path) -> None:
+    old, young = tmp_path / "kernels-old", tmp_path / "kernels-young"
+    for folder, days in ((old, 40), (young, 3)):
+        folder.mkdir()
+        os.utime(folder, (time.time() - 86_400 * days,) * 2)
+    mine = tmp_path / "kernels-mine"
+    mine.mkdir()
+    prune(tmp_path, mine)
+    assert sorted(tmp_path.iterdir()) == [mine, young]

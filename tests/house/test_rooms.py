@@ -20,8 +20,6 @@ ALLOWED = {
     "src/fogproof/study/methods/airlight.py": "the same",
     "src/fogproof/study/methods/paths.py": "a solution of the ball under a sky alone",
     "src/fogproof/scene/surfaces/surface.py": "validates its own field",
-    "src/fogproof/plan.py": "says in words what a scene needs",
-    "src/fogproof/scene_estimator.py": "chooses where an event is placed",
 }
 
 

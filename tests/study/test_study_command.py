@@ -21,7 +21,7 @@ TABLE = {
          "estimators": kinds("analog-fog", "certain-collision")},
         {"name": "beam", "quantity": "transmittance", "medium": {"sigma_a": 0.1, "sigma_s": 0.4}, "ray": RAY,
          "estimators": kinds("analog", {"kind": "march", "rule": "right"})},
-        {**BALL, "estimators": kinds("path-tracing", {"kind": "path-tracing", "gathering": "met"})},
+        {**BALL, "estimators": kinds("path-tracing", {"kind": "path-tracing", "light_sampling": "bsdf"})},
     ],
 }  # fmt: skip
 

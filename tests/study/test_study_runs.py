@@ -141,7 +141,7 @@ def test_an_interrupt_keeps_what_is_under_way(tmp_path, undisturbed):
 KILLER = """
 import os, signal, sys
 from fogproof.study import read_study, run_study
-from fogproof.study.store import Store
+from fogproof.study.stored_batches import Store
 left = [int(sys.argv[3])]
 add = Store.add
 def deadly(self, results):

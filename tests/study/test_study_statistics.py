@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from study_fixtures import SMALL, drawn, estimator, kinds, study_from
 
-from fogproof.checks.statistics.means import Moments
+from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.statistics.tails import binomial_at_most
 from fogproof.contracts import Reference
 from fogproof.study.aggregate import Level, merged, pooled

@@ -2,6 +2,7 @@
 of disk or user ends in a sentence from which the study can go on."""
 
 import os
+import random
 import resource
 import shutil
 import sqlite3
@@ -12,9 +13,11 @@ from pathlib import Path
 
 import pytest
 from study_fixtures import SMALL, drawn, study_from, toml
+from torture_store import torture
 
 from fogproof.checks import within
 from fogproof.study import StoreError
+from fogproof.study.batches import run_batch
 from fogproof.study.cells import cells_of
 from fogproof.study.executors import crew
 from fogproof.study.plan import batches_of
@@ -93,9 +96,9 @@ def torn(path):
 
 def changed_bits(path):
     connection = sqlite3.connect(path)
-    (blob,) = connection.execute("select moments from batches where id = 3").fetchone()
+    key, blob = connection.execute("select id, moments from batches limit 1").fetchone()
     blob = blob[:20] + bytes([blob[20] ^ 1]) + blob[21:]
-    connection.execute("update batches set moments = ? where id = 3", (blob,))
+    connection.execute("update batches set moments = ? where id = ?", (blob, key))
     connection.commit()
     connection.close()
 
@@ -199,3 +202,66 @@ def test_a_folder_that_cannot_be_made_is_told(tmp_path):
     (tmp_path / "file").touch()
     with pytest.raises(StoreError, match="cannot make the folder"), opened(tmp_path / "file" / "run", STUDY):
         pass
+
+
+def test_changed_bits_and_swapped_pages_are_found_or_harmless():
+    counts = torture(STUDY, bits=12, pages=3, seed=random.SystemRandom().randrange(2**31))
+    assert sum(counts.values()) == 15
+    assert not [came for came in counts if came.isupper()]
+    assert counts["found"] > 0
+
+
+BIGGER = {
+    "samples": {**SMALL, "samples": [64, 512, 2048, 4096], "scenes": SMALL["scenes"][:1]},
+    "replicates": {**SMALL, "replicates": 13, "scenes": SMALL["scenes"][:1]},
+    "scenes": {**SMALL, "scenes": SMALL["scenes"][:2]},
+    "words": {**SMALL, "title": "another", "scenes": [{**SMALL["scenes"][0], "question": "Which?"}]},
+}
+
+
+@pytest.mark.parametrize("table", BIGGER.values(), ids=BIGGER)
+def test_a_study_that_asks_for_more_keeps_what_it_has(tmp_path, table):
+    drawn(STUDY, tmp_path / "run")
+    bigger, numbers = study_from(table), []
+
+    def counted(text, folder, batch, reference):
+        numbers.append(batch.number)
+        return run_batch(text, folder, batch, reference)
+
+    extended = drawn(bigger, tmp_path / "run", draw=counted)
+    assert extended["digest"] == drawn(bigger, tmp_path / "afresh")["digest"]
+    kept, all_of_it = len(batches_of(cells_of(STUDY))), len(batches_of(cells_of(bigger)))
+    partial = len(batches_of(cells_of(STUDY)).stretches) if table is BIGGER["replicates"] else 0
+    assert all_of_it - kept <= len(numbers) <= all_of_it - kept + partial
+
+
+def test_a_study_that_asks_for_less_is_refused(tmp_path):
+    drawn(study_from(BIGGER["replicates"]), tmp_path)
+    with pytest.raises(StoreError, match=r"replicates: 13 has become 8"):
+        drawn(STUDY, tmp_path)
+
+
+def test_a_batch_of_something_else_is_found_under_the_right_key(tmp_path):
+    drawn(STUDY, tmp_path / "one")
+    other = study_from({**SMALL, "scenes": SMALL["scenes"][:1], "seed": 9})
+    drawn(other, tmp_path / "two")
+    connection = sqlite3.connect(tmp_path / "one" / FILE)
+    connection.execute("attach ? as two", (str(tmp_path / "two" / FILE),))
+    connection.execute("replace into batches select * from two.batches where id = (select max(id) from two.batches)")
+    connection.commit()
+    connection.close()
+    with pytest.raises(StoreError, match="is not what was written"):
+        drawn(STUDY, tmp_path / "one")
+
+
+def test_a_batch_that_nobody_asked_for_is_damage(tmp_path):
+    drawn(STUDY, tmp_path)
+    tampered(tmp_path / FILE, "update batches set id = 77 * (1 << 40) where id = (select max(id) from batches)")
+    with pytest.raises(StoreError, match="no study asked for"):
+        drawn(STUDY, tmp_path)
+
+
+def test_a_batch_that_is_gone_is_drawn_again(tmp_path, undisturbed):
+    drawn(STUDY, tmp_path)
+    tampered(tmp_path / FILE, "delete from batches where id = (select max(id) from batches)")
+    assert drawn(STUDY, tmp_path)["digest"] == undisturbed

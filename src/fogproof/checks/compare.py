@@ -1,130 +1,220 @@
 """`compare_estimators`: do two estimators have the same expectation, where nobody knows it?
 
-Welch's test (1947) of two means with unequal variances, its far tail corrected for skewness as for one mean. Two estimators that
-hit or miss the same values are compared exactly: given the hits of both together, those of the first are hypergeometric, and a
-binomial law bounds that.
+Realisations are drawn in pairs, one of each, and the differences are held to zero by everything that `check_estimator` has, also
+where both share random numbers: pairs are independent all the same. Two estimators that hit or miss the same values are compared by
+the sign test on the pairs in which they differ, which is exact. Each by itself must be finite, and its realisations independent.
 """
 
 from __future__ import annotations
 
-import math
 import time
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from itertools import islice
+from typing import Any, Literal
 
 import numpy as np
 
+from fogproof.checks.arguments import alpha_of, bounds_of, samples_of, seed_of
 from fogproof.checks.diagnosis import likely_cause
-from fogproof.checks.statistics.goodness import MISS, binomial_p
-from fogproof.checks.statistics.means import LARGEST_CORRECTION, LARGEST_SHARE, Moments
-from fogproof.checks.statistics.tails import normal_quantile, student_two_sided
-from fogproof.checks.streams import batch_generator, batch_sizes, fresh_seed
-from fogproof.checks.subject import call
-from fogproof.checks.verdict import Finding, Interval, Outcome, Resolution, Verdict
-from fogproof.contracts import Draws
+from fogproof.checks.draws import Source
+from fogproof.checks.escalation import stages
+from fogproof.checks.judgement import Judgement, dependence, judged
+from fogproof.checks.observed import Observed
+from fogproof.checks.quantities import Declared, column, quantities_of
+from fogproof.checks.statistics.goodness import binomial_p
+from fogproof.checks.statistics.moments import Moments
+from fogproof.checks.streams import batch_sizes
+from fogproof.checks.subject import UNIT_ROUNDOFF, Precision
+from fogproof.checks.verdict import Finding, Outcome, Verdict
+from fogproof.contracts import Draws, Reference
 from fogproof.errors import SubjectError
 from fogproof.validate import number
 
-Draw = Callable[[np.random.Generator, int], Any]
+Draw = Callable[[np.random.Generator, int], Any] | Any
+_NAMES = ("first", "second")
+_DIFFERENCE = 0.9  # share of alpha for the differences; the rest is for each estimator by itself
 
 
 def compare_estimators(
-    first: Draw, second: Draw, *, samples: int = 1_000_000, alpha: float = 1e-6, seed: int | None = None
+    first: Draw,
+    second: Draw,
+    *,
+    variance: tuple[Reference | float, Reference | float] | None = None,
+    bounds: tuple[float, float] | None = None,
+    nonnegative: bool = False,
+    tails: Literal["unknown", "light"] = "unknown",
+    tolerance: float = 0.0,
+    precision: Precision = "float64",
+    samples: int = 1_000_000,
+    alpha: float = 1e-6,
+    seed: int | None = None,
 ) -> Verdict:
     """Test that two estimators have the same expectation, channel by channel, inside one false-alarm probability `alpha`.
 
     first, second  `draw(rng, n)` -> (n,) or (n, channels) independent realisations, or `Draws`
-    samples        how many realisations of each
+    variance       the exact variances of one realisation of each
+    bounds         (low, high): no realisation of either lies outside; `nonnegative` is the same as (0, inf)
+    tails          "light": no heavier than those of the exponential law
+    tolerance      largest difference that is still none, in the unit of the values
+    precision      "float32": values are computed in single precision
+    samples        most realisations of each
+    alpha          false-alarm probability of this call with everything in it
     seed           any whole number; None draws a fresh one, which the verdict states
+
+    >>> compare_estimators(lambda rng, n: rng.random(n), lambda rng, n: 2 * rng.random(n), samples=10_000).outcome
+    'rejected'
     """
     started = time.perf_counter()
-    number("alpha", alpha, "must lie in (0, 1)", 0, 1, open_ends=True)
-    number("samples", samples, "must be at least 100", 100)
-    seed = fresh_seed() if seed is None else seed
-    data = [_moments(name, draw, samples, seed) for name, draw in (("first", first), ("second", second))]
-    if len(data[0]) != len(data[1]):
-        message = f"both estimators must have as many channels, got {len(data[0])} and {len(data[1])}"
-        raise SubjectError(message, "draw: value")
-    findings = []
-    for channel, (a, b) in enumerate(zip(*data, strict=True)):
-        name = "difference" if len(data[0]) == 1 else f"difference in channel {channel}"
-        findings.append(difference_test(name, a, b, alpha / len(data[0])))
+    alpha, samples, seed = alpha_of(alpha), samples_of(samples), seed_of(seed)
+    number("tolerance", tolerance, "must be >= 0", 0)
+    low, high = bounds_of(bounds, nonnegative)
+    roundoff = UNIT_ROUNDOFF[precision]
+    total = None if variance is None else _sum(*(Reference.of("variance", one) for one in variance))
+    declared = Declared(total, None, (low - high, high - low), tails == "light", (0.0, tolerance), roundoff)
+    sources = [
+        Source(draw, seed, tuple(batch_sizes(samples)), 0, f"compare {name}", precision)
+        for name, draw in zip(_NAMES, (first, second), strict=True)
+    ]
+    looks = [look.samples for look in stages(samples, None, alpha, 1.0)]
+    pairs: _Pairs | None = None
+    judgement = Judgement((), False)
+    for index, (both, calls) in enumerate(_drawn_together(sources)):
+        difference = _difference(*both)
+        if pairs is None:
+            pairs = _Pairs.of(both, difference, declared)
+        before, pairs = pairs.seen.n, pairs.after(both, difference, calls)
+        complete = pairs.seen.n == samples
+        if pairs.bad or complete or any(before < size <= pairs.seen.n for size in looks):
+            judgement = pairs.judged(_again(sources, index + 1), samples, alpha, complete)
+            if complete or judgement.final:
+                break
+    assert pairs is not None
     names = ", ".join(getattr(draw, "__qualname__", type(draw).__name__) for draw in (first, second))
     reproduce = f"compare_estimators({names}, samples={samples}, alpha={alpha:g}, seed={seed})"
+    settings = {"channels": len(pairs.signs[0]), "looks": looks}
     seconds = time.perf_counter() - started
-    return Verdict(
-        tuple(findings), alpha, samples, seed, seconds, {"channels": len(data[0])}, likely_cause(findings), reproduce
-    )
+    findings = judgement.findings
+    return Verdict(findings, alpha, pairs.seen.n, seed, seconds, settings, likely_cause(findings), reproduce)
 
 
-def _moments(name: str, draw: Draw, samples: int, seed: int) -> list[Moments]:
-    total: list[Moments] = []
-    for index, n in enumerate(batch_sizes(samples)):
-        result = call(f"{name} draw(rng, n)", draw, batch_generator(seed, f"compare {name}", 0, index), n)
-        x = np.asarray(result.value if isinstance(result, Draws) else result)
-        if x.dtype.kind not in "iufb" or x.ndim not in (1, 2) or len(x) != n:
-            raise SubjectError(
-                f"{name} draw must return ({n},) or ({n}, channels) numbers, got {x.shape}", "draw: value"
+def _sum(a: Reference, b: Reference) -> Reference:
+    return Reference(a.value + b.value, a.error + b.error)
+
+
+def _drawn_together(sources: list[Source]) -> Iterator[tuple[tuple[Draws, Draws], list[int]]]:
+    for (a, calls), (b, _) in zip(*(source.batches() for source in sources), strict=True):
+        if a.value.shape != b.value.shape:
+            message = "both estimators must have as many channels, got"
+            raise SubjectError(f"{message} {a.value.shape[1]} and {b.value.shape[1]}", "draw: value")
+        yield (a, b), calls
+
+
+def _again(sources: list[Source], upto: int) -> Callable[[], Iterator[tuple[Draws, list[int]]]]:
+    return lambda: ((_difference(*both), calls) for both, calls in islice(_drawn_together(sources), upto))
+
+
+def _difference(a: Draws, b: Draws) -> Draws:
+    """Return the differences, with the standard errors of these where both report their own."""
+    stderr = None
+    if a.stderr is not None and b.stderr is not None:
+        stderr = np.hypot(column(a.stderr), column(b.stderr))
+    with np.errstate(invalid="ignore"):
+        return Draws(a.value - b.value, stderr=stderr)
+
+
+@dataclass(frozen=True)
+class _Pairs:
+    """What was seen of the differences, of each estimator by itself, and how often each was the larger."""
+
+    seen: Observed
+    sides: tuple[Observed, Observed]
+    signs: np.ndarray
+    declared: Declared
+
+    @staticmethod
+    def of(both: tuple[Draws, Draws], difference: Draws, declared: Declared) -> _Pairs:
+        zero = Reference(np.zeros(both[0].value.shape[1]))
+        quantities = quantities_of(zero, declared, difference.stderr)
+        alone = [Observed.of(quantities_of(zero, Declared(), None), draws) for draws in both]
+        signs = np.zeros((2, both[0].value.shape[1]), dtype=np.int64)
+        return _Pairs(Observed.of(quantities, difference), (alone[0], alone[1]), signs, declared)
+
+    def after(self, both: tuple[Draws, Draws], difference: Draws, calls: list[int]) -> _Pairs:
+        sides = [side.after(draws, calls) for side, draws in zip(self.sides, both, strict=True)]
+        signs = [np.count_nonzero(difference.value > 0, axis=0), np.count_nonzero(difference.value < 0, axis=0)]
+        return replace(
+            self, seen=self.seen.after(difference, calls), sides=(sides[0], sides[1]), signs=self.signs + signs
+        )
+
+    @property
+    def bad(self) -> bool:
+        """Whether either returned something that is not finite."""
+        return any(side.bad for side in self.sides)
+
+    def judged(self, again: Any, samples: int, alpha: float, complete: bool) -> Judgement:
+        """Return the findings about the differences, and about each estimator by itself."""
+        if self.bad:
+            return Judgement(
+                tuple(_not_finite(*one) for one in zip(_NAMES, self.sides, strict=True) if one[1].bad), True
             )
-        if not np.isfinite(x).all():
-            raise SubjectError(f"{name} draw returned numbers that are not finite", "draw: value")
-        new = [Moments.of(np.ascontiguousarray(column)) for column in x.reshape(n, -1).astype(np.float64).T]
-        total = [a.merged(b) for a, b in zip(total, new, strict=True)] if total else new
-    return total
+        whole = judged(self.seen, again, samples, _DIFFERENCE * alpha, complete)
+        channels = len(self.seen.moments[0])
+        share = _DIFFERENCE * alpha / channels
+        findings = []
+        for finding in whole.findings:
+            if finding.check.startswith("mean"):
+                channel = int(finding.check.rpartition(" ")[2]) if channels > 1 else 0
+                findings.append(self._compared(finding, channel, share))
+            elif finding.check == "finite values":
+                findings.append(replace(finding, message=f"all realisations are finite, {self.seen.n} of each"))
+            else:
+                findings.append(finding)
+        for name, side in zip(_NAMES, self.sides, strict=True):
+            for finding in dependence(side, 0.5 * (1 - _DIFFERENCE) * alpha):
+                findings.append(replace(finding, check=f"{finding.check} of the {name}"))
+        return Judgement(tuple(findings), whole.final and any(f.outcome == "rejected" for f in findings))
+
+    def _compared(self, finding: Finding, channel: int, alpha: float) -> Finding:
+        """Return the finding about a mean difference in words of two means, and by the sign test for hits and misses."""
+        a, b = (side.moments[0][channel] for side in self.sides)
+        name = "difference" if len(self.signs[0]) == 1 else f"difference in channel {channel}"
+        effect = a.mean - b.mean
+        spread = 0.0 if self.seen.n < 2 else self.seen.moments[0][channel].stderr
+        start = f"means {a.mean:.7g} and {b.mean:.7g} differ by {effect:+.3g} +- {spread:.2g}"
+        rest = finding.message.partition(";")[2]
+        finding = replace(finding, check=name, message=start + (f";{rest}" if rest else ""))
+        if self.declared.tolerance == (0.0, 0.0) and _hits_of_the_same(a, b):
+            more, fewer = map(int, self.signs[:, channel])
+            p = binomial_p(more, more + fewer, 0.5, 0.5) if more + fewer else 1.0
+            outcome: Outcome = "rejected" if p <= alpha else "not rejected"
+            message = f"{start} (sign test of the {more + fewer} pairs in which they differ)"
+            finding = replace(finding, outcome=outcome, message=message, p_value=p, alpha=alpha, exact=False)
+        elif (a.low == a.high) != (b.low == b.high) and not self.declared.known(self._variance).two_sided:
+            message = f"{start}; one of them never varies, and a value too rare to be seen may hold the difference"
+            message += ": ask for more samples, or declare bounds=(low, high) or the exact variances"
+            finding = replace(finding, outcome="inconclusive", message=message, p_value=None, resolution=None)
+        rejected = finding.outcome == "rejected"
+        larger = ("the first is the larger",) if effect > 0 else ("the second is the larger",)
+        return replace(finding, effect=effect, region=larger if rejected else (), cause="bias" if rejected else "")
+
+    @property
+    def _variance(self) -> float | None:
+        return (
+            None
+            if self.declared.variance is None
+            else float(Reference.of("variance", self.declared.variance).value.max())
+        )
 
 
-def difference_test(name: str, a: Moments, b: Moments, alpha: float) -> Finding:
-    """Test that two samples have the same expectation."""
-    effect = a.mean - b.mean
-    parts = a.variance / a.n, b.variance / b.n
-    stderr = math.sqrt(sum(parts))
-    reach = normal_quantile(0.5 * MISS) * stderr
-    interval = Interval(effect - reach, effect + reach, 1 - MISS)
-    message = f"means {a.mean:.7g} and {b.mean:.7g} differ by {effect:+.3g} +- {stderr:.2g}"
-    power = (normal_quantile(alpha / 2) + normal_quantile(MISS)) * stderr
-    resolution = Resolution(name, power, MISS)
-    values = None if a.values is None or b.values is None else {*a.values, *b.values}
-    exact = values is not None and len(values) == 2 and a.n == b.n
-    if stderr == 0:
-        same = abs(effect) <= 1e-12 * max(abs(a.mean), abs(b.mean))
-        outcome: Outcome = "not rejected" if same else "inconclusive"
-        more = "" if same else "; neither varies: ask for more samples, or compare the numbers"
-        return Finding(name, outcome, message + more, effect=effect, resolution=resolution)
-    if exact:
-        high = max(values or ())
-        hits = (a.values or {}).get(high, 0), (b.values or {}).get(high, 0)
-        rarer = hits if sum(hits) <= a.n else (a.n - hits[0], b.n - hits[1])
-        p, z = binomial_p(rarer[0], sum(rarer), 0.5, 0.5), effect / stderr
-        message += " (exact test of hits)"
-    else:
-        third = a.skewness * a.variance**1.5 / a.n**2 - b.skewness * b.variance**1.5 / b.n**2
-        growth = abs(third) / stderr**3 / 3
-        needed = normal_quantile(alpha / 2)
-        if growth * needed**3 > LARGEST_CORRECTION or max(a.largest_share, b.largest_share) > LARGEST_SHARE:
-            message += "; too skewed for a test at this alpha: ask for more samples"
-            return Finding(
-                name, "inconclusive", message, None, alpha, effect=effect, resolution=resolution, interval=interval
-            )
-        freedom = stderr**4 / (parts[0] ** 2 / (a.n - 1) + parts[1] ** 2 / (b.n - 1))
-        z = effect / stderr
-        limit = max(needed, (LARGEST_CORRECTION / growth) ** (1 / 3)) if growth > 0 else math.inf
-        p = min(1.0, student_two_sided(freedom, z) * math.exp(growth * min(abs(z), limit) ** 3))
-    rejected = p <= alpha
-    return Finding(
-        name,
-        "rejected" if rejected else "not rejected",
-        message,
-        p,
-        alpha,
-        not exact,
-        z,
-        effect,
-        resolution,
-        interval=interval,
-        region=("the first is the larger",)
-        if rejected and effect > 0
-        else ("the second is the larger",)
-        if rejected
-        else (),
-        cause="bias" if rejected else "",
-    )
+def _hits_of_the_same(a: Moments, b: Moments) -> bool:
+    """Return whether both have shown the same two values: a law of hits and misses."""
+    if a.values is None or b.values is None:
+        return False
+    counts = {value: a.values.get(value, 0) + b.values.get(value, 0) for value in {**a.values, **b.values}}
+    return len(counts) == 2 and min(counts.values()) > 1
+
+
+def _not_finite(name: str, side: Observed) -> Finding:
+    message = f"{side.bad} of {side.n} realisations of the {name} are not finite"
+    return Finding(f"finite values of the {name}", "rejected", message, effect=side.bad / side.n, cause="bias")

@@ -29,6 +29,10 @@ WEIGHTS = {
     "dependence": 0.5,
     "fine joint": 0.5,
     "patches": 0.5,
+    "labels": 1.0,
+    "label cells": 0.5,
+    "label levels": 1.0,
+    "largest cell": 0.5,
     "serial correlation": 0.25,
     "repeated points": 0.25,
     "few values": 0.25,
@@ -44,7 +48,7 @@ DOUBT = 0.01
 EARLY = 1e-50
 """Share of alpha for the looks for gross errors: whatever they stop is beyond doubt, and they cost no power."""
 
-GROSS = {"distribution", "smooth", "atom", "lost samples"}
+GROSS = {"distribution", "smooth", "atom", "lost samples", "labels"}
 """The quick tests that no gross error escapes: only these are run at an early look, unless one of them rejects."""
 
 

@@ -52,15 +52,20 @@ def rounding_share(subject: Subject, pilot: np.ndarray) -> float:
     return float(np.mean(change[np.isfinite(change)])) if np.isfinite(change).any() else 0.0
 
 
-def normalisation(subject: Subject, total: float, error: float, rounding: float, hidden: float) -> Finding:
+def normalisation(
+    subject: Subject, total: float, error: float, rounding: float, hidden: float, given_up: float, unseen: float
+) -> Finding:
     """The pdf and the atoms must sum to 1, up to the bound on the integral and what rounding explains.
 
-    hidden  mass that features like those found may still hold unseen: a misfit of that size is inconclusive
+    hidden    mass that features like those found may still hold unseen: a misfit of that size is inconclusive
+    given_up  share of samples that the sampler gives up: they may be what is missing from the integral
+    unseen    share of the domain below which a feature may have met no look at all
     """
     total += sum(subject.atoms.values())
     slack = error + FLOOR[subject.precision] + rounding
     misfit = total - 1
-    resolution = Resolution("error of the pdf's integral", slack + hidden, 0.0)
+    where = f", outside features that fill less than {unseen:.1g} of the domain," if unseen else ""
+    resolution = Resolution(f"error of the pdf's integral{where}", slack + hidden, 0.0)
     what = "the pdf and its atoms sum to" if subject.atoms else "the pdf integrates to"
     message = f"{what} {total:.9g} +- {slack:.1g}"
     outcome: Outcome = "not rejected"
@@ -71,6 +76,10 @@ def normalisation(subject: Subject, total: float, error: float, rounding: float,
     elif slack < abs(misfit) <= slack + hidden:
         outcome = "inconclusive"
         message += f"; features as narrow as those found may hide up to {hidden:.1g} more: draw more samples"
+    elif given_up and misfit < -slack:
+        message += f"; {given_up:.3g} of the samples are given up: the pdf counts every sample, its integral is that of success"
+    elif abs(misfit) <= slack and given_up:
+        message += f"; {given_up:.3g} of the samples are given up: the pdf is that of the valid ones"
     elif abs(misfit) > slack:
         outcome, cause = "rejected", "normalisation"
         for ratio, words in _MEASURES.items():

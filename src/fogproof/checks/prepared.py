@@ -4,43 +4,39 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
 
-from fogproof.checks.density.charts import Chart, chart_of
-from fogproof.checks.density.features import Ranges, emptiest, ranges_of_line, ranges_of_plane
-from fogproof.checks.density.grid import (
-    Grid,
-    Marginal,
-    blurred,
-    grid_of,
-    line_grid_from_cdf,
-    refilled,
-    unit_square_grid,
-)
-from fogproof.checks.density.lookup import Lookup
-from fogproof.checks.density.model import Density, Effort, integrated, looked_at, looked_at_plane
-from fogproof.checks.density.quadrature import Leaves
+from fogproof.checks import sampled_integrals
+from fogproof.checks.claim import Claim, blind, claimed
+from fogproof.checks.density.charts import chart_of
+from fogproof.checks.density.features import Ranges, emptiest
+from fogproof.checks.density.grid import Grid, line_grid_from_cdf, pilot_grid, refilled, unit_square_grid
+from fogproof.checks.density.model import looked_at, looked_at_plane
 from fogproof.checks.edges import edge_uniforms, no_edge_uniforms
+from fogproof.checks.given_cdf import agreement, continuous_cdf, rosenblatt
 from fogproof.checks.jacobian import jacobian_agreement
-from fogproof.checks.normalisation import FLOOR, albedo, effort, mean_cosine, normalisation, rounding_share
-from fogproof.checks.probes import cdf_agreement, precision_agreement, reference_agreement
+from fogproof.checks.mixture import Mixture
+from fogproof.checks.normalisation import FLOOR, albedo, mean_cosine, normalisation
+from fogproof.checks.probes import precision_agreement, reference_agreement
 from fogproof.checks.promises import inside, usual_labels
 from fogproof.checks.purity import purity
 from fogproof.checks.statistics.repeats import KEPT, expected_repeats
 from fogproof.checks.statistics.serial import in_units
 from fogproof.checks.streams import batch_generator
-from fogproof.checks.subject import Subject, call, nudged, numbers
+from fogproof.checks.subject import Subject
+from fogproof.checks.table import table_grid
 from fogproof.checks.tally import Counter, Tally
 from fogproof.checks.verdict import Finding
-from fogproof.domains import Discrete, HalfLine, RealLine, UnitHemisphere, UnitSphere
+from fogproof.domains import Discrete, UnitHemisphere, UnitSphere
 
 PILOT = 1 << 14
 """Samples that set scales and show where the density is; they are not counted."""
 
-_COMPARED = 1024  # groups of cells in which a given cdf is compared with the pdf
+_LARGE_PILOT = 1 << 17  # samples that the histogram of the label test follows, at most
+_MOST_ENTRIES = 1 << 22  # of a table that is summed over
 _PRECISION_POINTS = 4096
 
 
@@ -54,24 +50,12 @@ class Pilot:
 
 
 @dataclass(frozen=True)
-class Claim:
-    """The integrated density of a continuous domain; `found` says whether looking closer has changed it."""
-
-    chart: Chart
-    density: Density
-    work: Effort
-    rounding: float
-    leaves: Leaves
-    grid: Grid
-    found: bool = False
-
-
-@dataclass(frozen=True)
 class Prepared:
     """All that does not depend on the tested samples.
 
-    claim     None on `Discrete`
+    claim     the density integrated by quadrature, None where there is no chart to do it on
     findings  of deterministic checks, but for the normalisation, which the samples may still refine
+    counted   whether the probabilities of the cells are known: from quadrature, a table, or a given cdf
     """
 
     subject: Subject
@@ -80,22 +64,48 @@ class Prepared:
     claim: Claim | None
     counter: Counter
     findings: tuple[Finding, ...]
+    counted: bool
 
     @property
     def grid(self) -> Grid:
         """The cells that samples are counted in."""
         return self.counter.grid
 
-    def normalisation(self, drawn: int) -> Finding:
+    @cached_property
+    def integral(self) -> tuple[float, float] | None:
+        """The integral of the pdf and a bound on its error; None where it is not known, and the labels judge it."""
+        if self.claim is not None:
+            return None if self.claim.doubt else (self.claim.leaves.total, self.claim.leaves.total_error)
+        if not self.counted:
+            return None
+        mass = self.subject.density(np.arange(self.grid.marginals[0].mass.size, dtype=np.float64))
+        return float(mass.sum()), 4 * self.subject.roundoff * float(np.sum(np.abs(mass)))
+
+    def convention(self, tally: Tally) -> tuple[float | None, int]:
+        """Return the probability of the continuous part, None where it is not known, and among how many samples.
+
+        A sampler may give samples up. Then either the pdf is that of the valid ones, or it counts every sample and its integral is
+        the probability of success: which of the two is told by the integral.
+        """
+        valid = tally.drawn - tally.given_up
+        if self.integral is None:
+            return None, tally.drawn
+        if not tally.given_up:
+            return 1 - sum(self.subject.atoms.values()), valid
+        total, error = self.integral
+        whole = abs(total + sum(self.subject.atoms.values()) - 1) <= error + FLOOR[self.subject.precision]
+        return (1 - sum(self.subject.atoms.values()), valid) if whole else (total, tally.drawn)
+
+    def normalisation(self, tally: Tally) -> Finding:
         """Return the finding on the integral of the pdf."""
-        if self.claim is None:
-            mass = self.subject.density(np.arange(self.grid.marginals[0].mass.size, dtype=np.float64))
-            error = 4 * self.subject.roundoff * float(np.sum(np.abs(mass)))
-            return normalisation(self.subject, float(mass.sum()), error, 0.0, 0.0)
-        claim = self.claim
-        hidden = 16 / drawn if claim.found else 0.0
-        leaves = claim.leaves
-        finding = normalisation(self.subject, leaves.total, leaves.total_error, claim.rounding, hidden)
+        if self.integral is None:
+            why = "there is no quadrature on this domain" if self.claim is None else self.claim.doubt
+            return Finding("normalisation", "not rejected", f"{why}: the labels of samples and known points judge it")
+        rounding = self.claim.rounding if self.claim else 0.0
+        hidden = 16 / tally.drawn if self.claim and self.claim.found else 0.0
+        share = tally.given_up / max(tally.drawn, 1)
+        unseen = blind(len(self.claim.chart.axes)) if self.claim else 0.0
+        finding = normalisation(self.subject, *self.integral, rounding, hidden, share, unseen)
         agreed = any(f.check == "cdf against the pdf" and f.outcome == "not rejected" for f in self.findings)
         if finding.outcome == "inconclusive" and agreed:
             message = (
@@ -107,10 +117,10 @@ class Prepared:
     def expected_repeats(self, n: int) -> float:
         """Return about how many repeated points a right sampler may show among n."""
         points = self.pilot.points[:2048]
-        if self.claim is None or len(points) == 0:
+        if len(points) == 0:
             return 0.0
         pole = 0.0
-        if isinstance(self.subject.domain, (UnitSphere, UnitHemisphere)):
+        if self.claim is not None and isinstance(self.subject.domain, (UnitSphere, UnitHemisphere)):
             marginal = self.claim.grid.marginals[0]
             near = 4 * self.subject.roundoff * (marginal.edges[-1] - marginal.edges[0])
             low, high = marginal.at(np.array([marginal.edges[0] + near, marginal.edges[-1] - near]))
@@ -129,7 +139,7 @@ class Prepared:
     def refined(self, tally: Tally) -> Prepared:
         """Return the same with the density integrated anew where the samples showed something unknown."""
         claim = self.claim
-        if claim is None or self.counter.ranges is None:
+        if claim is None or claim.doubt or self.counter.ranges is None:
             return self
         strange = claim.chart.coordinates(tally.strange) if len(tally.strange) else np.empty((0, len(claim.chart.axes)))
         if len(claim.chart.axes) == 1:
@@ -157,29 +167,77 @@ def prepare(subject: Subject, samples: int, seed: int) -> Prepared:
         findings += [*purity(subject, uniforms), edge_uniforms(subject, pilot.labels)]
     if subject.reference is not None and len(pilot.points):
         findings.append(reference_agreement(subject, pilot.points))
-    if isinstance(subject.domain, Discrete):
-        grid = Grid((_discrete(subject),), None)
-        counter = _counter(subject, grid, lambda x: (x,), None, pilot, fingerprinted=False)
-        return Prepared(subject, samples, pilot, None, counter, tuple(findings))
-    claim = _claim(subject, pilot.points, samples)
+    if isinstance(subject.domain, Discrete) and subject.domain.n <= _MOST_ENTRIES:
+        grid, count = table_grid(subject, int(subject.domain.n))
+        counter = _counter(subject, grid, count, None, pilot, None)
+        return Prepared(subject, samples, pilot, None, counter, tuple(findings), True)
+    chart = chart_of(subject.domain, pilot.points, subject.axis)
+    claim = None if chart is None else claimed(subject, chart, pilot.points, samples)
+    if claim is None or claim.doubt:
+        return _by_labels(subject, samples, seed, pilot, claim, findings)
     if subject.axis is not None and subject.mean_cosine is not None:
         findings.append(mean_cosine(subject, claim.chart, claim.density, claim.leaves, claim.work))
     if subject.eval is not None and subject.albedo is not None:
         findings += albedo(subject, claim.chart, claim.leaves, claim.work)
     if subject.precision == "float32" and subject.dimensions is not None:
         findings.append(_precision(subject, claim, seed))
-    grid, count, ranges = claim.grid, claim.chart.count, None
-    if subject.cdf is None:
-        ranges = _ranges(claim)
-    elif len(claim.chart.axes) == 1:
-        grid = line_grid_from_cdf(grid, partial(_continuous_cdf, subject, claim.chart), 8 * subject.roundoff)
-        findings.append(_cdf_agreement(subject, claim, grid.marginals[0]))
-    else:
-        labels = (claim.chart.axes[0].label, claim.chart.axes[1].label)
-        grid, count = unit_square_grid(labels, samples), partial(_rosenblatt, subject)
-        findings.append(jacobian_agreement(subject, pilot.points))
-    counter = _counter(subject, grid, count, ranges, pilot, fingerprinted=True)
-    return Prepared(subject, samples, pilot, claim, counter, tuple(findings))
+    grid, count, mixture = claim.grid, claim.chart.count, None
+    ranges: Ranges | None = claim.ranges
+    if subject.cdf is not None:
+        grid, count = _by_cdf(subject, claim, samples)
+        ranges = None
+        if len(claim.chart.axes) == 1:
+            findings.append(agreement(subject, claim, grid.marginals[0]))
+        else:
+            findings.append(jacobian_agreement(subject, pilot.points))
+    if len(claim.chart.axes) > 1 and (subject.cdf is not None or not _independent(grid)):
+        law = subject.domain.law(pilot.points)
+        mixture = Mixture.of(subject, law, pilot.points, seed, 1)
+    counter = _counter(subject, grid, count, ranges, pilot, mixture)
+    return Prepared(subject, samples, pilot, claim, counter, tuple(findings), True)
+
+
+def _independent(grid: Grid) -> bool:
+    return grid.plane is not None and grid.plane.independent
+
+
+def _by_cdf(subject: Subject, claim: Claim, samples: int) -> tuple[Grid, Callable[[np.ndarray], Any]]:
+    """Return the cells that a given cdf makes, and how samples are counted in them."""
+    if len(claim.chart.axes) == 1:
+        cdf = partial(continuous_cdf, subject, claim.chart)
+        return line_grid_from_cdf(claim.grid, cdf, 8 * subject.roundoff), claim.chart.count
+    labels = (claim.chart.axes[0].label, claim.chart.axes[1].label)
+    return unit_square_grid(labels, samples), partial(rosenblatt, subject)
+
+
+def _by_labels(
+    subject: Subject, samples: int, seed: int, pilot: Pilot, claim: Claim | None, findings: list[Finding]
+) -> Prepared:
+    """Return what is to be judged by labels, because no quadrature knows the density."""
+    wanted = int(np.clip(samples // 8, PILOT, _LARGE_PILOT))
+    points = pilot.points
+    if wanted > PILOT:
+        points = np.concatenate([points, _pilot(subject, seed, 1, wanted - PILOT).points])
+    law = subject.domain.law(points)
+    mixture = Mixture.of(subject, law, points, seed, samples).wider(points)
+    halves = np.full((1, len(law.axes)), 0.5)
+    if subject.axis is not None and subject.mean_cosine is not None:
+        findings.append(sampled_integrals.mean_cosine(mixture))
+    if subject.eval is not None and subject.albedo is not None:
+        findings += sampled_integrals.albedo(mixture)
+    if subject.cdf is not None and claim is not None:
+        grid, count = _by_cdf(subject, claim, samples)
+        if len(claim.chart.axes) > 1:
+            findings.append(jacobian_agreement(subject, pilot.points))
+        counter = _counter(subject, grid, count, None, pilot, mixture)
+        return Prepared(subject, samples, pilot, claim, counter, tuple(findings), True)
+
+    def place(x: np.ndarray) -> tuple[np.ndarray, ...]:
+        return tuple(law.coordinates(x, np.broadcast_to(halves, (len(x), len(law.axes)))).T)
+
+    grid = pilot_grid(law.axes, np.stack(place(pilot.points), axis=-1))
+    counter = _counter(subject, grid, place, None, pilot, mixture)
+    return Prepared(subject, samples, pilot, claim, counter, tuple(findings), False)
 
 
 def _counter(
@@ -188,14 +246,16 @@ def _counter(
     count: Callable[[np.ndarray], tuple[np.ndarray, ...]],
     ranges: Ranges | None,
     pilot: Pilot,
-    fingerprinted: bool,
+    mixture: Mixture | None,
 ) -> Counter:
-    scores = tuple(in_units(m.scores) for m in grid.marginals)
-    return Counter(subject, grid, count, ranges, pilot.labels, scores, fingerprinted)
+    table = isinstance(subject.domain, Discrete)
+    scores = tuple(in_units(m.scores) for m in (grid.marginals[:1] if table else grid.marginals))
+    fingerprinted = not (table or (mixture is not None and mixture.law.stepped))
+    return Counter(subject, grid, count, ranges, pilot.labels, scores, fingerprinted, mixture)
 
 
-def _pilot(subject: Subject, seed: int) -> Pilot:
-    draw = subject.draw(batch_generator(seed, "samples", 0, 0), PILOT)
+def _pilot(subject: Subject, seed: int, index: int = 0, n: int = PILOT) -> Pilot:
+    draw = subject.draw(batch_generator(seed, "samples", 0, index), n)
     good = inside(subject, draw)
     for at in subject.at_atom(draw.x).values():
         good = good & ~at
@@ -203,73 +263,6 @@ def _pilot(subject: Subject, seed: int) -> Pilot:
         good = good & draw.valid
     channels = 0 if draw.weight is None else draw.weight.size // len(draw.x)
     return Pilot(draw.x[good], usual_labels(subject, draw), channels)
-
-
-def _claim(subject: Subject, points: np.ndarray, samples: int) -> Claim:
-    chart = chart_of(subject.domain, points, subject.axis)
-    work = effort(subject, points)
-
-    def density(c: np.ndarray) -> np.ndarray:
-        p = subject.density(chart.to_point(c))
-        return np.where(p == 0, 0.0, p * chart.jacobian(c))
-
-    pilot = chart.coordinates(points) if len(points) else np.empty((0, len(chart.axes)))
-    leaves = integrated(chart, density, pilot, work)
-    grid = grid_of(chart, leaves, samples)
-    grid = blurred(grid, chart, points[:2048], nudged(points[:2048], subject.roundoff), subject.roundoff)
-    rounding = rounding_share(subject, points) if subject.precision == "float32" and len(points) else 0.0
-    return Claim(chart, density, work, rounding, leaves, grid)
-
-
-def _ranges(claim: Claim) -> Ranges:
-    chart, grid = claim.chart, claim.grid
-    if grid.plane is not None:
-        return ranges_of_plane(chart, claim.leaves, grid.marginals, grid.plane)
-    return ranges_of_line(
-        chart.axes[0], grid.marginals[0], chart.jacobian, lambda t: claim.density(np.ascontiguousarray(t)[:, None])
-    )
-
-
-def _discrete(subject: Subject) -> Marginal:
-    assert isinstance(subject.domain, Discrete)
-    n = int(subject.domain.n)
-    mass = subject.density(np.arange(n, dtype=np.float64))
-    mass = np.where(np.isfinite(mass) & (mass > 0), mass, 0.0)
-    cdf = np.concatenate([[0.0], np.cumsum(mass)]) / (mass.sum() if mass.sum() > 0 else 1.0)
-    edges = np.arange(n + 1) - 0.5
-    error, none = np.full(n + 1, 4 * subject.roundoff), np.zeros(n + 1)
-    return Marginal("x", edges, edges, cdf, none, error, none, False, Lookup.of(edges), lambda x: x, True)
-
-
-def _continuous_cdf(subject: Subject, chart: Chart, counted: np.ndarray) -> np.ndarray:
-    """Return the given cdf (m,) at counted coordinates of a line, without the atoms' steps; at infinite ends it is 0 and 1."""
-    assert subject.cdf is not None
-    t = chart.axes[0].uncounted(counted)
-    points = chart.to_point(t[:, None])
-    left = isinstance(subject.domain, RealLine) & (t <= 0)
-    right = isinstance(subject.domain, (RealLine, HalfLine)) & (t >= 1)
-    inner = ~(left | right)
-    values = np.where(right, 1.0, 0.0)
-    values[inner] = numbers("cdf(x)", call("cdf(x)", subject.cdf, points[inner]), (int(inner.sum()),))
-    points = np.where(right, np.inf, np.where(left, -np.inf, points))
-    for point, probability in subject.atoms.items():
-        values = values - np.where(points >= point, probability, 0.0)
-    return values
-
-
-def _rosenblatt(subject: Subject, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    assert subject.cdf is not None
-    values = numbers("cdf(x)", call("cdf(x)", subject.cdf, x), (len(x), 2))
-    return values[:, 0], values[:, 1]
-
-
-def _cdf_agreement(subject: Subject, claim: Claim, given: Marginal) -> Finding:
-    own = claim.grid.marginals[0]
-    at = np.unique(np.arange(_COMPARED + 1) * len(own.mass) // _COMPARED)
-    scale = 1 - sum(subject.atoms.values())
-    right = np.diff(own.cdf[at]) * claim.leaves.total
-    slack = own.doubt(at[:-1], at[1:]) + FLOOR[subject.precision] + claim.rounding
-    return cdf_agreement(np.diff(given.cdf[at]) * scale, right, slack, own.shown[at[1:]])
 
 
 def _precision(subject: Subject, claim: Claim, seed: int) -> Finding:

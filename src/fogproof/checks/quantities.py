@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
+from fogproof.checks.statistics.known import NOTHING, Known
 from fogproof.contracts import Draws, Reference
-from fogproof.errors import SubjectError
+from fogproof.errors import InvalidValueError, SubjectError
 from fogproof.validate import require
 
 
@@ -16,12 +18,13 @@ from fogproof.validate import require
 class Quantity:
     """One expectation, channel by channel.
 
-    name      what it is called
-    numbers   draws with values (n, channels) -> (n, channels) whose mean it is
-    value     (channels,) what it should be
-    error     (channels,) bound on the error of that
-    cause     the likely class of error where it is not
-    variance  (channels,) the exact variance of the numbers, or None
+    name     what it is called
+    numbers  draws with values (n, channels) -> (n, channels) whose mean it is
+    value    (channels,) what it should be
+    error    (channels,) bound on the error of that
+    cause    the likely class of error where it is not
+    known    what is declared of one of the numbers, channel by channel; or nothing
+    tame     whether an event a hundred times larger than all that was seen is out of the question
     """
 
     name: str
@@ -29,61 +32,100 @@ class Quantity:
     value: np.ndarray
     error: np.ndarray
     cause: str
-    variance: np.ndarray | None = None
+    known: tuple[Known, ...] = ()
+    tame: bool = False
+
+    def known_of(self, channel: int) -> Known:
+        """Return what is declared of the numbers of one channel."""
+        return self.known[channel] if self.known else NOTHING
+
+
+@dataclass(frozen=True)
+class Declared:
+    """What the caller declares beside the reference; see `check_estimator`."""
+
+    variance: Reference | float | None = None
+    cost: Reference | float | None = None
+    bounds: tuple[float, float] = (-math.inf, math.inf)
+    light: bool = False
+    tolerance: tuple[float, float] = (0.0, 0.0)
+    roundoff: float = 2.0**-53
+
+    def known(self, variance: float | None = None) -> Known:
+        """Return what may be relied on of a value."""
+        return Known(variance, *self.bounds, self.light)
+
+    def widened(self, value: np.ndarray, error: np.ndarray) -> np.ndarray:
+        """Return the error with the tolerance, and with the rounding of single precision, where that is declared."""
+        relative, absolute = self.tolerance
+        rounding = 8 * self.roundoff if self.roundoff > 2.0**-53 else 0.0
+        return np.asarray(error + absolute + (relative + rounding) * np.abs(value))
 
 
 def quantities_of(
-    reference: Reference | float | Mapping[int, Reference | float],
-    variance: Reference | float | None,
-    cost: Reference | float | None,
-    with_stderr: bool,
+    reference: Reference | float | Mapping[int, Reference | float], declared: Declared, stderr: np.ndarray | None
 ) -> list[Quantity]:
-    """Return all that is known of an estimator, the means of its values first."""
+    """Return all that is known of an estimator, the means of its values first; `stderr` are the first it reports, if any."""
+    cost = _cost(declared)
     if isinstance(reference, Mapping):
-        return [_order(label, one) for label, one in reference.items()] + _cost(cost)
+        if declared.variance is not None:
+            raise InvalidValueError("variance", "needs one reference, not one for each order", declared.variance)
+        return [_order(label, one, declared) for label, one in reference.items()] + cost
     value, error = _exact("reference", reference, None)
-    spread = None
+    error = declared.widened(value, error)
+    low, high = declared.bounds
+    inside = (value + error >= low) & (value - error <= high)
+    require("reference", value, inside, f"must lie within the declared bounds ({low:g}, {high:g})")
+    known = [declared.known() for _ in value]
     more = []
-    if variance is not None:
-        v, v_error = _exact("variance", variance, len(value))
-        spread = v + v_error
+    if declared.variance is not None:
+        v, v_error = _exact("variance", declared.variance, len(value))
+        known = [declared.known(float(one)) for one in v + v_error]
         # (X - r)^2 has expectation V + (mean - r)^2, and |mean - r| <= error.
-        more.append(Quantity("variance", lambda d: (d.value - value) ** 2, v, v_error + error**2, "wrong variance"))
-    if with_stderr:
+        v_error = v_error + error**2 + (8 * declared.roundoff * v if declared.roundoff > 2.0**-53 else 0.0)
+        largest = np.maximum((high - value) ** 2, (value - low) ** 2)
+        squares = tuple(Known(low=0.0, high=float(one), light=declared.light) for one in largest)
+        more.append(Quantity("variance", lambda d: _squared(d.value - value), v, v_error, "wrong variance", squares))
+    if stderr is not None:
+        unit = _unit(stderr)
+        zero = np.zeros_like(value)
+        name, cause = "square of the error less that of the standard error", "wrong standard errors"
         more.append(
             Quantity(
-                "square of the error less that of the standard error",
-                lambda d: (d.value - value) ** 2 - _column(d.stderr) ** 2,
-                np.zeros_like(value),
-                error**2,
-                "wrong standard errors",
+                name,
+                lambda d: _squared((d.value - value) / unit) - _squared(column(d.stderr) / unit),
+                zero,
+                (error / unit) ** 2,
+                cause,
             )
         )
-    return [Quantity("mean", lambda d: d.value, value, error, "bias", spread), *more, *_cost(cost)]
+    return [Quantity("mean", lambda d: d.value, value, error, "bias", tuple(known)), *more, *cost]
 
 
-def _order(label: int, reference: Reference | float) -> Quantity:
+def _order(label: int, reference: Reference | float, declared: Declared) -> Quantity:
     value, error = _exact("reference", reference, None)
+    low, high = declared.bounds
+    known = tuple(Known(None, min(low, 0.0), max(high, 0.0), declared.light) for _ in value)
 
     def numbers(d: Draws) -> np.ndarray:
         if d.order is None:
             raise SubjectError("draw must return Draws with an order when references by order are given", "draw: order")
-        return np.where(_column(d.order) == label, d.value, 0.0)
+        return np.where(column(d.order) == label, d.value, 0.0)
 
-    return Quantity(f"mean of order {label}", numbers, value, error, "bias")
+    return Quantity(f"mean of order {label}", numbers, value, declared.widened(value, error), "bias", known)
 
 
-def _cost(cost: Reference | float | None) -> list[Quantity]:
-    if cost is None:
+def _cost(declared: Declared) -> list[Quantity]:
+    if declared.cost is None:
         return []
 
     def numbers(d: Draws) -> np.ndarray:
         if d.cost is None:
             raise SubjectError("draw must return Draws with a cost when a reference cost is given", "draw: cost")
-        return _column(d.cost)
+        return column(d.cost)
 
-    value, error = _exact("cost", cost, 1)
-    return [Quantity("cost", numbers, value, error, "wrong cost")]
+    value, error = _exact("cost", declared.cost, 1)
+    return [Quantity("cost", numbers, value, error, "wrong cost", (Known(low=0.0),), tame=True)]
 
 
 def _exact(name: str, reference: Reference | float, channels: int | None) -> tuple[np.ndarray, np.ndarray]:
@@ -98,7 +140,19 @@ def _exact(name: str, reference: Reference | float, channels: int | None) -> tup
     return value, error
 
 
-def _column(values: np.ndarray | None) -> np.ndarray:
+def _squared(x: np.ndarray) -> np.ndarray:
+    with np.errstate(over="ignore", under="ignore"):
+        return x * x
+
+
+def _unit(stderr: np.ndarray) -> float:
+    """Return 1, or a scale in which squares of standard errors stay within binary64."""
+    largest = float(np.max(stderr, initial=0.0, where=np.isfinite(stderr)))
+    return 1.0 if largest == 0 or 1e-100 < largest < 1e100 else math.ldexp(1.0, math.frexp(largest)[1])
+
+
+def column(values: np.ndarray | None) -> np.ndarray:
+    """Return values of shape (n,) as (n, 1)."""
     assert values is not None
     array = np.asarray(values, dtype=np.float64)
     return array[:, None] if array.ndim == 1 else array

@@ -206,10 +206,10 @@ class SamplerCheck:
 
 def judge(prepared: Prepared, tally: Tally, alpha: float, final: bool = True) -> list[Finding]:
     """Return all findings about the samples so far; the statistical ones share alpha."""
-    findings = [prepared.normalisation(tally.drawn), *prepared.findings, *tally.watch.findings()]
+    findings = [prepared.normalisation(tally), *prepared.findings, *tally.watch.findings()]
     statistical = judged(tests_of(prepared, tally), alpha, final)
     rejected = any(f.outcome == "rejected" for f in statistical)
-    sphere = isinstance(prepared.subject.domain, UnitSphere) and prepared.subject.cdf is None
+    sphere = isinstance(prepared.subject.domain, UnitSphere) and prepared.subject.cdf is None and prepared.counted
     if rejected and sphere and mirrored(prepared.grid.marginals[0], tally.fine[0]):
         statistical = [f.because("sign convention") if f.cause else f for f in statistical]
     return findings + _illustrated(prepared, tally, statistical)
@@ -217,6 +217,8 @@ def judge(prepared: Prepared, tally: Tally, alpha: float, final: bool = True) ->
 
 def _illustrated(prepared: Prepared, tally: Tally, findings: list[Finding]) -> list[Finding]:
     """Return the findings with a figure on the first, and on every rejected one that counts cells."""
+    if not prepared.counted:
+        return findings
     marginals, plane = prepared.grid.marginals, prepared.grid.plane
     if plane is None or tally.plane is None:
         figure = bins_figure(marginals[0], tally.fine[0])

@@ -28,3 +28,12 @@ def batch_sizes(samples: int) -> list[int]:
     """Return the sizes of the batches that make up `samples`."""
     full, rest = divmod(samples, BATCH)
     return [BATCH] * full + ([rest] if rest else [])
+
+
+def growing_sizes(samples: int) -> tuple[list[int], list[int]]:
+    """Return the sizes of batches for a sample that grows by doubling, and the numbers of samples at which it may end."""
+    ends = [size for size in (256 << k for k in range(64)) if size < samples] + [samples]
+    sizes: list[int] = []
+    for before, end in zip([0, *ends[:-1]], ends, strict=True):
+        sizes += batch_sizes(end - before)
+    return sizes, ends

@@ -8,12 +8,16 @@ from typing import Any
 
 import numpy as np
 
+from fogproof.checks.density.grid import Grid
 from fogproof.checks.escalation import Test
 from fogproof.checks.few_values import few_values, few_values_axes
+from fogproof.checks.mixture import Mixture
 from fogproof.checks.normalisation import FLOOR
 from fogproof.checks.prepared import Prepared
+from fogproof.checks.statistics import labels
 from fogproof.checks.statistics.goodness import binomial, chi_square, chi_square_along, chi_square_sparse, kolmogorov
-from fogproof.checks.statistics.means import Moments, mean_test
+from fogproof.checks.statistics.means import mean_test
+from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.statistics.repeats import repeats_test
 from fogproof.checks.statistics.scan import blocks, scan, scan_ends, scan_plane
 from fogproof.checks.statistics.serial import serial_test
@@ -23,6 +27,7 @@ from fogproof.checks.tally import Tally
 from fogproof.checks.verdict import Finding
 
 _CELLS = 512  # of the chi-square test along an axis
+_COARSER = 3  # levels of the tree from one chi-square of labels to the next
 
 
 def tests_of(prepared: Prepared, tally: Tally) -> list[Test]:
@@ -33,8 +38,57 @@ def tests_of(prepared: Prepared, tally: Tally) -> list[Test]:
     def add(kind: str, run: Callable[..., Finding], name: str, *arguments: Any) -> None:
         tests.append(Test(kind, partial(run, name, *arguments)))
 
+    vacuum = 1 - sum(subject.atoms.values()) <= FLOOR[subject.precision]  # nothing is left for a density
+    if prepared.counted and not vacuum:
+        _add_cells(add, grid, tally)
+    if prepared.counter.mixture is not None and not vacuum:
+        _add_labels(add, prepared.counter.mixture, tally)
+    if not subject.quasi_random:
+        add("serial correlation", serial_test, "serial correlation", tally.serial)
+    if prepared.counter.fingerprinted:
+        for coordinate in few_values_axes(subject):
+            drawn = prepared.pilot.points, tally.points
+            add("few values", few_values, f"different values of {coordinate}", subject, coordinate, *drawn)
+        add("repeated points", repeats_test, "repeated points", tally.prints, prepared.expected_repeats)
+    n = max(tally.drawn, 1)
+    wrong_atom = "wrong probability of an atom"
+    rest, tried = prepared.convention(tally)
+    if rest is not None:
+        slack = FLOOR[subject.precision]
+        what, cause = "probability of the continuous part", wrong_atom if subject.atoms else "lost samples"
+        found = tally.continuous, max(tried, 1), rest - slack, rest + slack
+        add("lost samples", binomial, "continuous part", what, *found, cause)
+    for label, q in subject.events.items():
+        what, hits = f"probability of the event {label:g}", tally.events[float(label)]
+        add("event", binomial, "declared event", what, hits, n, q * (1 - 1e-15), q * (1 + 1e-15), "wrong event label")
+    for point, q in subject.atoms.items():
+        what = f"probability of the atom at {named(point)}"
+        add(
+            "atom",
+            binomial,
+            "atom",
+            what,
+            tally.atoms[point],
+            max(tried, 1),
+            q * (1 - 1e-15),
+            q * (1 + 1e-15),
+            wrong_atom,
+        )
+    if prepared.pilot.channels and subject.albedo is not None:
+        claims = np.broadcast_to(np.asarray(subject.albedo, dtype=float), (prepared.pilot.channels,))
+        data = tally.weights or (Moments(),) * len(claims)
+        for channel, claimed in enumerate(claims.tolist()):
+            name = "mean weight" if len(claims) == 1 else f"mean weight of channel {channel}"
+            add("mean weight", _mean_weight, name, data[channel], claimed)
+    return tests
+
+
+def _add_cells(add: Callable[..., None], grid: Grid, tally: Tally) -> None:
+    """Add the tests of counts in cells of known probability."""
     several = len(grid.marginals) > 1
     for axis, (marginal, counts) in enumerate(zip(grid.marginals, tally.fine, strict=True)):
+        if len(counts) < 2:
+            continue
         of, along = (f" of {marginal.label}", f" in {marginal.label}") if several else ("", "")
         add("distribution", kolmogorov, f"distribution{of}", marginal, counts)
         add("smooth", smooth, f"smooth components{along}", marginal, counts)
@@ -53,31 +107,18 @@ def tests_of(prepared: Prepared, tally: Tally) -> list[Test]:
             shares, blur = plane.shares[0][:, None] * plane.shares[1], plane.blur(plane.size)
             fine = tally.plane.ravel(), shares.ravel(), blur.ravel()
             add("fine joint", chi_square_sparse, "chi-square, fine joint", *fine)
-    if not subject.quasi_random:
-        add("serial correlation", serial_test, "serial correlation", tally.serial)
-    if prepared.counter.fingerprinted:
-        for coordinate in few_values_axes(subject):
-            drawn = prepared.pilot.points, tally.points
-            add("few values", few_values, f"different values of {coordinate}", subject, coordinate, *drawn)
-        add("repeated points", repeats_test, "repeated points", tally.prints, prepared.expected_repeats)
-    n = max(tally.drawn, 1)
-    wrong_atom = "wrong probability of an atom"
-    rest, slack = 1 - sum(subject.atoms.values()), FLOOR[subject.precision]
-    what, cause = "probability of the continuous part", wrong_atom if subject.atoms else "lost samples"
-    add("lost samples", binomial, "continuous part", what, tally.continuous, n, rest - slack, rest + slack, cause)
-    for label, q in subject.events.items():
-        what, hits = f"probability of the event {label:g}", tally.events[float(label)]
-        add("event", binomial, "declared event", what, hits, n, q * (1 - 1e-15), q * (1 + 1e-15), "wrong event label")
-    for point, q in subject.atoms.items():
-        what = f"probability of the atom at {named(point)}"
-        add("atom", binomial, "atom", what, tally.atoms[point], n, q * (1 - 1e-15), q * (1 + 1e-15), wrong_atom)
-    if prepared.pilot.channels and subject.albedo is not None:
-        claims = np.broadcast_to(np.asarray(subject.albedo, dtype=float), (prepared.pilot.channels,))
-        data = tally.weights or (Moments(),) * len(claims)
-        for channel, claimed in enumerate(claims.tolist()):
-            name = "mean weight" if len(claims) == 1 else f"mean weight of channel {channel}"
-            add("mean weight", _mean_weight, name, data[channel], claimed)
-    return tests
+
+
+def _add_labels(add: Callable[..., None], mixture: Mixture, tally: Tally) -> None:
+    """Add the label tests: under the one or both conventions on samples that are given up."""
+    sums = tally.labels or (mixture.nothing(), mixture.nothing())
+    conventions = sums if tally.given_up else sums[:1]
+    add("labels", labels.whole, "labels", conventions)
+    depth = mixture.tree.depth
+    for level in range(depth, 1, -_COARSER):
+        add("label cells", labels.cells_at, f"labels in {1 << level} cells", level, conventions)
+    add("label levels", labels.levels, "labels by level of the pdf", conventions)
+    add("largest cell", labels.largest, "labels, largest cell", mixture.describe, conventions)
 
 
 def _mean_weight(name: str, data: Moments, claimed: float, alpha: float) -> Finding:

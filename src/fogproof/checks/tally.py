@@ -15,8 +15,10 @@ import numpy as np
 
 from fogproof.checks.density.features import Ranges, kept
 from fogproof.checks.density.grid import Grid
+from fogproof.checks.mixture import Mixture
 from fogproof.checks.promises import Watch
-from fogproof.checks.statistics.means import Moments
+from fogproof.checks.statistics.labels import Sums
+from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.statistics.repeats import KEPT, fingerprints
 from fogproof.checks.statistics.serial import Successions
 from fogproof.checks.streams import BATCH
@@ -41,6 +43,8 @@ class Tally:
     points   the points of the first batch
     weights  moments of the returned weights, channel by channel
     strange  points whose density the quadrature does not know
+    labels   sums of the label test: with all samples, and with those only that were not given up; None without the test
+    given_up samples that the sampler itself gave up on
     watch    what was seen of each promise
     """
 
@@ -56,6 +60,8 @@ class Tally:
     points: np.ndarray
     weights: tuple[Moments, ...]
     strange: np.ndarray
+    labels: tuple[Sums, Sums] | None
+    given_up: int
     watch: Watch = field(repr=False)
 
     @property
@@ -91,6 +97,8 @@ class Tally:
             self.points if len(self.points) else other.points,
             weights,
             kept(self.strange, other.strange),
+            _joined(self.labels, other.labels),
+            self.given_up + other.given_up,
             self.watch.merged(other.watch),
         )
 
@@ -110,6 +118,8 @@ class Tally:
             "points": _packed(self.points),
             "weights": [moments.to_dict() for moments in self.weights],
             "strange": _packed(self.strange),
+            "labels": None if self.labels is None else [[_packed(a) for a in each.columns] for each in self.labels],
+            "given_up": self.given_up,
             "broken": {name: list(what) for name, what in self.watch.broken.items()},
             "seen": self.watch.seen,
         }
@@ -132,6 +142,8 @@ class Tally:
             _unpacked(state["points"]),
             tuple(Moments.from_dict(moments) for moments in state["weights"]),
             _unpacked(state["strange"]),
+            None if state["labels"] is None else _label_sums(state["labels"]),
+            state["given_up"],
             replace(watch, broken=broken, seen=dict(state["seen"])),
         )
 
@@ -145,6 +157,7 @@ class Counter:
     labels  the usual event label of each place
     scores  for each axis, the middle probability (m,) of each fine cell, in the units of serial correlation
     fingerprinted  whether repetitions mean anything
+    mixture  of the label test, None without it
     """
 
     subject: Subject
@@ -154,6 +167,7 @@ class Counter:
     labels: dict[Any, int]
     scores: tuple[np.ndarray, ...]
     fingerprinted: bool
+    mixture: Mixture | None = None
 
     def empty(self) -> Tally:
         """Return the tally of no samples."""
@@ -172,6 +186,8 @@ class Counter:
             np.empty((0, *self.subject.domain.shape)),
             (),
             np.empty(0),
+            None,
+            0,
             Watch(self.subject, self.labels),
         )
 
@@ -189,8 +205,7 @@ class Counter:
             size = grid.plane.size
             rows = [r[c] for r, c in zip(grid.plane.rows, cells, strict=True)]
             plane = np.bincount(rows[0] * size + rows[1], minlength=size * size).reshape(size, size)
-            coarse = len(grid.plane.mass)
-            at = (rows[0] * coarse // size) * coarse + rows[1] * coarse // size
+            at = grid.plane.coarse(cells)
         strange = np.empty(0)
         if self.ranges is not None and len(points):
             strange = points[self.ranges.strange(cells[0] if at is None else at, p)]
@@ -199,7 +214,9 @@ class Counter:
         labels = np.empty(0) if draw.event is None else draw.event
         events = {float(label): int(np.count_nonzero(labels == label)) for label in subject.events}
         first = index * BATCH < KEPT
-        serial = Successions.of([s[c] for s, c in zip(self.scores, cells, strict=True)], first) if len(points) else None
+        serial = (
+            Successions.of([s[c] for s, c in zip(self.scores, cells, strict=False)], first) if len(points) else None
+        )
         remembered = self.fingerprinted and first
         prints = fingerprints(points) if remembered else np.empty(0, dtype=np.uint64)
         kept_points = points if index == 0 else np.empty((0, *subject.domain.shape))
@@ -207,9 +224,13 @@ class Counter:
         if draw.weight is not None:
             columns = draw.weight.reshape(len(draw.x), -1).T
             weights = tuple(Moments.of(np.ascontiguousarray(column)) for column in columns)
+        mixed = self.mixture is not None and index < self.mixture.most
+        sums = self.mixture.count(draw, good, p, index) if self.mixture is not None and mixed else None
+        lost = 0 if draw.valid is None else int(np.count_nonzero(~draw.valid))
+        n, strange = len(draw.x), strange[:4096]
         return Tally(
             (index,),
-            len(draw.x),
+            n,
             fine,
             plane,
             extremes,
@@ -219,9 +240,22 @@ class Counter:
             prints,
             kept_points,
             weights,
-            strange[:4096],
+            strange,
+            sums,
+            lost,
             watch,
         )
+
+
+def _joined(first: tuple[Sums, Sums] | None, second: tuple[Sums, Sums] | None) -> tuple[Sums, Sums] | None:
+    if first is None or second is None:
+        return first or second
+    return first[0].merged(second[0]), first[1].merged(second[1])
+
+
+def _label_sums(state: list[Any]) -> tuple[Sums, Sums]:
+    every, valid = (Sums(*map(_unpacked, columns)) for columns in state)
+    return every, valid
 
 
 def _written(point: Any) -> Any:

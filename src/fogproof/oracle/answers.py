@@ -107,7 +107,7 @@ def evaluate(quantity: Quantity, arguments: dict[str, Any], limits: Limits) -> t
     with within(limits.seconds), np.errstate(all="ignore"):
         reference = quantity.function(**arguments)
     value, error = np.broadcast_arrays(np.asarray(reference.value), np.asarray(reference.error))
-    return value + 0.0, error + 0.0, reference
+    return np.asarray(value + 0.0), np.asarray(error + 0.0), reference
 
 
 def require_numbers(quantity: Quantity, value: np.ndarray, error: np.ndarray) -> None:

@@ -8,6 +8,7 @@ import signal
 import threading
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
+from types import FrameType
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,10 @@ from fogproof.scene.arrays import Count
 
 DEEPEST = 64
 """Levels of lists and tables in a request: NumPy has as many axes."""
+
+
+AGAIN = 0.05
+"""Seconds after which an alarm that came at a bad moment rings again."""
 
 
 @dataclass(frozen=True)
@@ -72,6 +77,14 @@ def _at(arguments: dict[str, Any], path: str) -> Any:
     return getattr(value, inner, None) if inner else value
 
 
+def _importing(frame: FrameType | None) -> bool:
+    while frame is not None:
+        if frame.f_code.co_filename.startswith("<frozen importlib"):
+            return True
+        frame = frame.f_back
+    return False
+
+
 class _Alarm(BaseException):
     """Raised wherever the program is when time is up; no `except Exception` on the way may swallow it."""
 
@@ -84,7 +97,10 @@ def within(seconds: float) -> Iterator[None]:
         yield
         return
 
-    def ring(_signal: int, _frame: Any) -> None:
+    def ring(_signal: int, frame: FrameType | None) -> None:
+        if _importing(frame):  # a module that is left half-imported would spoil every answer after this one
+            signal.setitimer(signal.ITIMER_REAL, AGAIN)
+            return
         raise _Alarm
 
     before = signal.signal(signal.SIGALRM, ring)

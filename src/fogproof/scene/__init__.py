@@ -1,5 +1,6 @@
 """Scenes as plain frozen data that validate themselves. No formula lives here."""
 
+from fogproof.scene import phase as _phase
 from fogproof.scene.lights import DirectionalLight, Environment, Light, PointLight, SpotLight
 from fogproof.scene.media import (
     AnisotropicMedium,
@@ -13,23 +14,7 @@ from fogproof.scene.media import (
     VoxelGrid,
 )
 from fogproof.scene.occluders import Disk, Occluder, Sphere
-from fogproof.scene.phase import (
-    CornetteShanks,
-    DoubleHenyeyGreenstein,
-    Draine,
-    Hazy,
-    HenyeyGreenstein,
-    Isotropic,
-    Mie,
-    Mixture,
-    Murky,
-    PhaseFunction,
-    Ramp,
-    Rayleigh,
-    Schlick,
-    Tabulated,
-    VaryingPhase,
-)
+from fogproof.scene.phase import *  # noqa: F403
 from fogproof.scene.rays import Ray
 from fogproof.scene.scenes import Scattering, Scene
 from fogproof.scene.shapes import Ball, Box, HalfSpace, Shape, Slab, Unbounded
@@ -39,41 +24,27 @@ __all__ = [
     "AnyMedium",
     "Ball",
     "Box",
-    "CornetteShanks",
     "DirectionalLight",
     "Disk",
-    "DoubleHenyeyGreenstein",
-    "Draine",
     "Environment",
     "ExponentialMedium",
     "HalfSpace",
-    "Hazy",
-    "HenyeyGreenstein",
-    "Isotropic",
     "Light",
     "LinearMedium",
     "Medium",
-    "Mie",
-    "Mixture",
-    "Murky",
     "Occluder",
     "OpenGLFog",
-    "PhaseFunction",
     "PiecewiseConstantMedium",
     "PointLight",
     "Procedural",
-    "Ramp",
     "Ray",
-    "Rayleigh",
     "Scattering",
     "Scene",
-    "Schlick",
     "Shape",
     "Slab",
     "Sphere",
     "SpotLight",
-    "Tabulated",
     "Unbounded",
-    "VaryingPhase",
     "VoxelGrid",
 ]
+__all__ += _phase.__all__

@@ -8,7 +8,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Any
 
+import numpy as np
+
+from fogproof.errors import InvalidValueError
 from fogproof.validate import Channels, as_float_array
+
+MOST_AXES = 16
+"""Of an array in a file or request: NumPy broadcasts 32 axes, and the formulas need some of their own."""
 
 
 @dataclass(frozen=True)
@@ -25,7 +31,7 @@ class Numbers:
     def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> Any:
         from pydantic_core import core_schema
 
-        return core_schema.no_info_plain_validator_function(lambda value: as_float_array("array", value))
+        return core_schema.no_info_plain_validator_function(_read)
 
     def __get_pydantic_json_schema__(self, _schema: Any, _handler: Any) -> dict[str, Any]:
         if self.table or self.axes:
@@ -35,6 +41,13 @@ class Numbers:
             "anyOf": [{"type": "number"}, {"type": "array"}, {"enum": ["inf", "-inf"]}],
             "description": "a number or nested lists of numbers",
         }
+
+
+def _read(value: Any) -> np.ndarray:
+    array = as_float_array("array", value)
+    if array.ndim > MOST_AXES:
+        raise InvalidValueError("array", f"must have at most {MOST_AXES} axes", array.ndim)
+    return array
 
 
 class _GreyOrChannels:

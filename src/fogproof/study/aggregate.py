@@ -12,11 +12,11 @@ from itertools import groupby, islice
 
 import numpy as np
 
-from fogproof.checks.statistics.means import Moments
+from fogproof.checks.statistics.moments import Moments
 from fogproof.study.batches import COLUMNS, TAIL_SHARE
 from fogproof.study.cells import Cell
 from fogproof.study.plan import Batches, Stretch
-from fogproof.study.store import Row
+from fogproof.study.stored_batches import Row
 
 _N, _MEAN, _M2, _M3, _M4, _LOW, _HIGH, _AT_LOW, _AT_HIGH, _BAD = range(len(COLUMNS))
 _AT_ONCE = 10_000

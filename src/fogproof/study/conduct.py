@@ -44,10 +44,11 @@ def run_study(
     batches = batches_of(cells)
     with opened(folder, study, salvage) as store:
         prepare(cells)
-        missing = len(batches) - store.count()
+        done = store.done()
+        missing = len(batches) - len(done)
         slots = 0
         if missing:
-            with crew(executor, workers) as hands, Progress(cells, batches, store.done(), hands.slots) as progress:
+            with crew(executor, workers) as hands, Progress(cells, batches, done, hands.slots) as progress:
                 store.begin(started, json.dumps(environment(), sort_keys=True))
                 draw_missing(study, cells, batches, store, hands, progress.advance)
                 slots = hands.slots

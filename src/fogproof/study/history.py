@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from fogproof.checks.compare import difference_test
-from fogproof.checks.statistics.means import Moments
+from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.statistics.tails import normal_quantile, normal_two_sided
+from fogproof.checks.statistics.welch import difference_test
 from fogproof.study.convergence import Z
 
 _LEAST = 4

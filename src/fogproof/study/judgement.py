@@ -13,7 +13,8 @@ import numpy as np
 
 from fogproof.checks import Finding
 from fogproof.checks.statistics.heavy import Tail
-from fogproof.checks.statistics.means import Moments, mean_test
+from fogproof.checks.statistics.means import mean_test
+from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.statistics.tails import gamma_above, normal_quantile, student_two_sided
 from fogproof.checks.verdict import Outcome
 from fogproof.contracts import Reference

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from fogproof.checks.statistics.means import Moments
+from fogproof.checks.statistics.moments import Moments
 from fogproof.contracts import Reference
 from fogproof.study.aggregate import Level, pooled
 from fogproof.study.cells import Cell

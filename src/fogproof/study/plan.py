@@ -92,8 +92,12 @@ class Batches(Sequence[Batch]):
     def __len__(self) -> int:
         return self.stretches[-1].begin + len(self.stretches[-1])
 
+    def stretch(self, number: int) -> int:
+        """Return the index of the stretch that a batch belongs to."""
+        return bisect_right(self.stretches, number, key=lambda s: s.begin) - 1
+
     def __getitem__(self, number: int) -> Batch:  # type: ignore[override]  # nobody slices them
-        stretch = self.stretches[bisect_right(self.stretches, number, key=lambda s: s.begin) - 1]
+        stretch = self.stretches[self.stretch(number)]
         (piece,) = _each(stretch, np.array([number]))
         return piece
 

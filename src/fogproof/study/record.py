@@ -28,7 +28,7 @@ from fogproof.study.judgement import tests_of
 from fogproof.study.measures import Measured, measure
 from fogproof.study.plan import Batch, Batches
 from fogproof.study.ranking import ranked
-from fogproof.study.store import Store
+from fogproof.study.stored_batches import Store
 from fogproof.verify import SCHEMA
 
 COLUMNS = (
@@ -63,7 +63,7 @@ def make_record(
         measured.append(measure(cell, levels[cell.index], alpha, twin))
     scenes = [_scene(number, study, measured) for number in range(len(study.scenes))]
     failures = [_failure(row, cells, batches) for row in store.failures()]
-    done = store.count()
+    done = len(store.done())
     sessions = [{"started": started, "environment": json.loads(text)} for started, text in store.sessions()]
     answers = [
         {"question": scene["question"], "scene": scene["name"], **{k: scene["answer"][k] for k in _ANSWER}}
@@ -180,8 +180,8 @@ def _code() -> str:
     """Return a sum of the sources of fogproof: batches of two states of the code should not be mixed."""
     root, words = Path(fogproof.__file__).parent, hashlib.blake2b(digest_size=10)
     for folder in ("analytic", "estimators", "scene", "study"):
-        for file in sorted((root / folder).glob("*.py")):
-            words.update(file.name.encode() + file.read_bytes())
+        for file in sorted((root / folder).rglob("*.py")):
+            words.update(file.relative_to(root).as_posix().encode() + file.read_bytes())
     return words.hexdigest()
 
 

@@ -13,7 +13,7 @@ from fogproof.study.cells import Cell
 from fogproof.study.executors import ClusterError, Crew
 from fogproof.study.files import Study
 from fogproof.study.plan import Batch
-from fogproof.study.store import Store
+from fogproof.study.stored_batches import Store
 
 ATTEMPTS = 3
 """A batch that has failed so often is given up for this run, and reported."""

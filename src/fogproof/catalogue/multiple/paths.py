@@ -110,6 +110,7 @@ def _by_order(count: int) -> Reference:
     orders, whole = analytic.slab_reflectance_orders(1.0, VIEW, count - 1), analytic.slab_reflectance(0.9, 1.0, VIEW)
     scale = 0.9 ** np.arange(count)
     value, error = orders.value * scale, orders.error * scale
+    value[0] = error[0] = 0.0  # nothing comes back unscattered
     rest = float(whole.value) - value.sum()
     return Reference(
         np.append(value, rest), np.append(error, float(whole.error) + error.sum()), orders.method, orders.source
@@ -157,7 +158,7 @@ def _slabs() -> list[EstimatorCase]:
         _case(
             "slab/met",
             "Slab under a sky that paths meet, with the variance of a random walk",
-            lambda: PathTracer(FOG, SLAB, ABOVE, SKY, BLACK, "met", roulette=None),
+            lambda: PathTracer(FOG, SLAB, ABOVE, SKY, BLACK, "bsdf", roulette=None),
             lambda: analytic.slab_reflectance(0.9, 1.0, VIEW),
             "slab_reflectance",
             "the batch is full when the short paths are through",
@@ -167,7 +168,7 @@ def _slabs() -> list[EstimatorCase]:
         _case(
             "slab/looked-for",
             "Slab under a sky that collisions look for",
-            lambda: PathTracer(FOG, SLAB, ABOVE, SKY, BLACK, "looked for", roulette=None),
+            lambda: PathTracer(FOG, SLAB, ABOVE, SKY, BLACK, "nee", roulette=None),
             lambda: analytic.slab_reflectance(0.9, 1.0, VIEW),
             "slab_reflectance",
             "light is looked for and met, and counted twice",
@@ -177,7 +178,7 @@ def _slabs() -> list[EstimatorCase]:
         _case(
             "slab/both",
             "Slab that scatters forward, the sky looked for and met, by shares",
-            lambda: PathTracer(forward, SLAB, ABOVE, SKY, BLACK, "both"),
+            lambda: PathTracer(forward, SLAB, ABOVE, SKY, BLACK, "mis"),
             lambda: analytic.slab_reflectance(0.9, 1.0, VIEW, HenyeyGreenstein(0.75)),
             "slab_reflectance",
             "directions are drawn with the opposite sign of g",
@@ -216,11 +217,11 @@ def _slabs() -> list[EstimatorCase]:
         _case(
             "slab/orders",
             "Slab, orders one by one: none, single, double, …",
-            lambda: PathTracer(FOG, SLAB, ABOVE, SKY, Surface(BELOW), "met", columns=6, roulette=None),
+            lambda: PathTracer(FOG, SLAB, ABOVE, SKY, Surface(BELOW), "bsdf", columns=6, roulette=None),
             lambda: _by_order(5),
             "slab_reflectance_orders, slab_reflectance",
             "an order too much is told of each",
-            lambda: _shifted(PathTracer(FOG, SLAB, ABOVE, SKY, BLACK, "met", columns=6, roulette=None)),
+            lambda: _shifted(PathTracer(FOG, SLAB, ABOVE, SKY, BLACK, "bsdf", columns=6, roulette=None)),
         ),
         _case(
             "slab/ambient",
@@ -291,11 +292,11 @@ def _boundaries() -> list[EstimatorCase]:
         _case(
             "half-space/sky",
             "Half space under the sky",
-            lambda: PathTracer(dim, half_space, ABOVE, SKY, gathering="met"),
+            lambda: PathTracer(dim, half_space, ABOVE, SKY, light_sampling="bsdf"),
             lambda: analytic.half_space_reflectance(0.7, VIEW),
             "half_space_reflectance",
             "the half space ends one mean free path down",
-            lambda: PathTracer(dim, SLAB, ABOVE, SKY, BLACK, gathering="met"),
+            lambda: PathTracer(dim, SLAB, ABOVE, SKY, BLACK, light_sampling="bsdf"),
         ),
         _case(
             "half-space/sun",
@@ -370,14 +371,14 @@ def _bodies() -> list[EstimatorCase]:
             "ball/orders",
             "Ball under the sky, orders one by one",
             lambda: PathTracer(
-                Medium(0.0, 1.0), BALL, ASIDE, SKY, gathering="looked for", columns=5, deepest=4, roulette=None
+                Medium(0.0, 1.0), BALL, ASIDE, SKY, light_sampling="nee", columns=5, deepest=4, roulette=None
             ),
             lambda: analytic.ball_radiance_orders(1.0, 0.3, 4),
             "ball_radiance_orders",
             "light that was scattered once passes for light that was not",
             lambda: _merged(
                 PathTracer(
-                    Medium(0.0, 1.0), BALL, ASIDE, SKY, gathering="looked for", columns=5, deepest=4, roulette=None
+                    Medium(0.0, 1.0), BALL, ASIDE, SKY, light_sampling="nee", columns=5, deepest=4, roulette=None
                 )
             ),
             source=_LOOKING,
@@ -395,11 +396,11 @@ def _bodies() -> list[EstimatorCase]:
         _case(
             "ball/white-furnace",
             "White furnace: a ball of albedo 1, g = 0.99, in light from everywhere",
-            lambda: PathTracer(peaked, BALL, ASIDE, SKY, gathering="met", roulette=None),
+            lambda: PathTracer(peaked, BALL, ASIDE, SKY, light_sampling="bsdf", roulette=None),
             lambda: analytic.white_furnace(peaked, ASIDE),
             "white_furnace",
             "paths end after three scatterings",
-            lambda: PathTracer(peaked, BALL, ASIDE, SKY, gathering="met", roulette=None, deepest=3),
+            lambda: PathTracer(peaked, BALL, ASIDE, SKY, light_sampling="bsdf", roulette=None, deepest=3),
             variance=lambda: 0.0,
             samples=100_000,
         ),

@@ -53,8 +53,9 @@ def oracle_pdf(phase: PhaseFunction, axis: Axis, rounding: float = 2e-15) -> Cal
     def reference(x: np.ndarray) -> Reference:
         mu = x @ np.asarray(axis)
         below, at, above = (phase_pdf(phase, np.clip(mu + shift, -1, 1)) for shift in (-rounding, 0, rounding))
-        spread = np.maximum(np.abs(below.value - at.value), np.abs(above.value - at.value))
-        return Reference(at.value, at.error + spread, at.method, at.source)
+        with np.errstate(invalid="ignore"):  # where it is infinite straight ahead
+            spread = np.maximum(np.abs(below.value - at.value), np.abs(above.value - at.value))
+        return Reference(at.value, at.error + np.nan_to_num(spread, nan=np.inf), at.method, at.source)
 
     return reference
 

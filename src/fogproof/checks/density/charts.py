@@ -1,8 +1,8 @@
 """Charts: each domain as a box of one or two coordinates, in which integrals are iterated and cells are boxes.
 
 The measure of the domain is `jacobian` times the box's own. Sphere and hemisphere use (theta, phi) about a pole, in which every
-smooth density is smooth; the disk uses (r, phi). Unbounded lines are mapped to (0, 1) by a rational map scaled by a pilot sample,
-so that the density's bulk lies in the middle whatever its unit.
+smooth density is smooth; the disk uses (r, phi). Unbounded lines are mapped to (0, 1) by a map scaled by a pilot sample: its bulk
+lies in the middle whatever its unit, and heavy tails are not crowded at an end.
 
 A coordinate has three forms: the one integrated over; the one samples are counted in, a cheap increasing function of it (for theta
 the versine 1 - cos theta, computed without loss near either pole, whatever the rounding of the vector's length); and the one shown
@@ -27,7 +27,7 @@ from fogproof.domains import (
     UnitSphere,
     UnitSquare,
 )
-from fogproof.errors import UnsupportedError
+from fogproof.domains.line import Tail
 
 Map = Callable[[np.ndarray], np.ndarray]
 
@@ -76,8 +76,8 @@ class Chart:
         return np.stack([axis.uncounted(counted) for axis, counted in columns], axis=-1)
 
 
-def chart_of(domain: Domain, pilot: np.ndarray, axis: tuple[float, float, float] | None) -> Chart:
-    """Return the chart of a continuous domain; `pilot` points set its scale, `axis` the pole of the sphere."""
+def chart_of(domain: Domain, pilot: np.ndarray, axis: tuple[float, float, float] | None) -> Chart | None:
+    """Return the chart of a domain, None where there is none; `pilot` points set its scale, `axis` the pole of the sphere."""
     match domain:
         case UnitSphere():
             return _sphere(np.pi, np.asarray(axis or (0.0, 0.0, 1.0)))
@@ -93,10 +93,10 @@ def chart_of(domain: Domain, pilot: np.ndarray, axis: tuple[float, float, float]
         case Interval(a, b):
             return Chart((Axis("x", a, b),), lambda c: c[:, 0], lambda x: (x,), _ones)
         case HalfLine(a):
-            return _half_line(a, float(np.median(pilot - a)) if len(pilot) else 1.0)
+            return _half_line(a, Tail.of(pilot - a))
         case RealLine():
-            return _real_line(*_center_and_spread(pilot))
-    raise UnsupportedError(f"no quadrature is known on {domain}")
+            return _real_line(pilot)
+    return None
 
 
 def unit_square(labels: tuple[str, str]) -> Chart:
@@ -154,21 +154,28 @@ def _disk() -> Chart:
     return Chart(axes, to_point, count, lambda c: c[:, 0])
 
 
-def _half_line(a: float, scale: float) -> Chart:
-    m = scale if 0 < scale < np.inf else 1.0
-
+def _half_line(a: float, tail: Tail) -> Chart:
     def to_point(c: np.ndarray) -> np.ndarray:
-        return a + m * c[:, 0] / (1 - c[:, 0])
+        return a + tail.quantile(c[:, 0])
 
     def count(x: np.ndarray) -> tuple[np.ndarray, ...]:
-        t = np.maximum(x - a, 0)
-        return (t / (t + m),)
+        return (tail.cdf(np.maximum(x - a, 0)),)
 
     shown = Axis("x", 0.0, 1.0, shown=lambda t: to_point(t[:, None]))
-    return Chart((shown,), to_point, count, lambda c: m / (1 - c[:, 0]) ** 2)
+    return Chart((shown,), to_point, count, lambda c: 1 / tail.density(tail.quantile(c[:, 0])))
 
 
-def _real_line(center: float, spread: float) -> Chart:
+def _heavy_line(pilot: np.ndarray) -> Chart:
+    law = RealLine().law(pilot)
+    shown = Axis("x", 0.0, 1.0, shown=lambda t: law.place(t[:, None]))
+    return Chart((shown,), law.place, lambda x: (law.coordinates(x, x)[:, 0],), lambda c: 1 / law.density(law.place(c)))
+
+
+def _real_line(pilot: np.ndarray) -> Chart:
+    center, spread = _center_and_spread(pilot)
+    if Tail.of(np.abs(pilot - center)).b < 1:
+        return _heavy_line(pilot)
+
     def to_point(c: np.ndarray) -> np.ndarray:
         t = c[:, 0]
         return center + spread * (t - 0.5) / np.sqrt(t * (1 - t))

@@ -109,6 +109,12 @@ class Plane:
         """Rows, and columns, that are counted."""
         return len(self.shares[0])
 
+    def coarse(self, cells: list[np.ndarray]) -> np.ndarray:
+        """Return (n,) the coarse cell, row by row, of points in the given fine cells (n,) of the two axes."""
+        side, size = len(self.mass), self.size
+        first, second = (rows[cell] * side // size for rows, cell in zip(self.rows, cells, strict=True))
+        return np.asarray(first * side + second)
+
     def blur(self, size: int) -> np.ndarray:
         """Return (size, size) the probability that rounding moves into or out of each of as many cells."""
         if max(float(edges.max()) for edges in self.blurs) < _NO_BLUR:
@@ -258,6 +264,20 @@ def _plane(chart: Chart, leaves: Leaves, marginals: tuple[Marginal, ...], sample
     independent = independent and bool(np.all(error <= 1e-3 * product + 1e-9))
     none = np.zeros(size + 1)
     return Plane((rows[0], rows[1]), (shares[0], shares[1]), (none, none), mass, error, independent)
+
+
+def pilot_grid(labels: tuple[str, ...], u: np.ndarray) -> Grid:
+    """Return cells that hold equal shares of pilot points u (n, k) along each axis: places in order, not known probabilities."""
+    marginals = []
+    for axis, label in enumerate(labels):
+        inner = np.unique(u[:, axis])[:: max(len(u) // _REGIONS, 1)]
+        edges = np.unique(np.concatenate([[0.0], inner[(inner > 0) & (inner < 1)], [1.0]]))
+        share = np.interp(edges, np.sort(u[:, axis]), np.arange(len(u)) / len(u)) if len(u) else edges
+        share[0], share[-1] = 0.0, 1.0
+        unknown, none = np.full(len(edges), np.inf), np.zeros(len(edges))
+        lookup = Lookup.of(edges)
+        marginals.append(Marginal(label, edges, edges, share, unknown, none, none, False, lookup, lambda c: c))
+    return Grid(tuple(marginals), None)
 
 
 def unit_square_grid(labels: tuple[str, str], samples: int) -> Grid:

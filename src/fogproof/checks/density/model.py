@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fogproof.checks.density.charts import Chart
+from fogproof.checks.density.charts import Axis, Chart
 from fogproof.checks.density.curve import TO_COEFFICIENTS, curve_of_line, legendre
 from fogproof.checks.density.quadrature import NODES, Leaves, integrate, refine, replaced, split
 
@@ -24,6 +24,8 @@ _SPREAD = 32  # more panels, of equal width: they see what the pilot of a wrong 
 _PLANE = 8  # boxes along each axis of a plane to begin with
 _PROBES = 32  # points of a panel at which its polynomial is compared with the density
 _POINTS = 4096  # of the pilot that are compared on a plane
+_FIRST = 200_000  # evaluations on a plane, after which it shows whether more would help
+_HOPELESS = 1e-4  # error after them that only a density which jumps along a curve leaves
 _ROUNDS = 12  # of looking and cutting
 _MOST_CUT = 256  # boxes cut in one round of looking
 _RELATIVE = 1e-3  # a polynomial that is wrong by less misses no feature
@@ -41,6 +43,28 @@ class Effort:
 def integrated(chart: Chart, density: Density, pilot: np.ndarray, effort: Effort) -> Leaves:
     """Return boxes that fill the chart, with the density (m, k) -> (m,) known on each; `pilot` (n, k) are coordinates."""
     return _line(chart, density, pilot[:, 0], effort) if len(chart.axes) == 1 else _plane(chart, density, pilot, effort)
+
+
+def second_view(chart: Chart, density: Density, pilot: np.ndarray, effort: Effort) -> Leaves:
+    """Return other boxes with the same density, none of their first edges in common with those of `integrated`."""
+    if len(chart.axes) == 1:
+        inner = (
+            np.quantile(pilot[:, 0], (np.arange(_PANELS // 2) + 0.5) / (_PANELS // 2)) if len(pilot) else np.empty(0)
+        )
+        breaks = np.unique(np.concatenate([inner, _shifted(chart.axes[0], _SPREAD)]))
+        low, high = breaks[:-1, None], breaks[1:, None]
+    else:
+        low, high = corners(tuple(_shifted(axis, _PLANE) for axis in chart.axes))
+    leaves = integrate(density, low, high, effort.tolerance, effort.budget, effort.noise)
+    if len(chart.axes) == 1:
+        return looked_at(density, leaves, np.sort(pilot[:, 0]), effort)
+    return looked_at_plane(density, leaves, pilot[-_POINTS:], effort)
+
+
+def _shifted(axis: Axis, count: int) -> np.ndarray:
+    """Return the ends of an axis and inner edges that no whole number of equal parts has."""
+    inner = (np.arange(count - 1) + 2**-0.5) / (count - 0.6)
+    return np.concatenate([[axis.low], axis.low + (axis.high - axis.low) * inner, [axis.high]])
 
 
 def _line(chart: Chart, density: Density, pilot: np.ndarray, effort: Effort) -> Leaves:
@@ -112,7 +136,10 @@ def _cut_around(left: np.ndarray, right: np.ndarray, around: np.ndarray) -> tupl
 
 def _plane(chart: Chart, density: Density, pilot: np.ndarray, effort: Effort) -> Leaves:
     low, high = corners(tuple(np.linspace(axis.low, axis.high, _PLANE + 1) for axis in chart.axes))
-    leaves = integrate(density, low, high, effort.tolerance, effort.budget, effort.noise)
+    leaves = integrate(density, low, high, effort.tolerance, min(_FIRST, effort.budget), effort.noise)
+    if not leaves.total_error <= _HOPELESS:
+        return leaves
+    leaves = refine(density, leaves, effort.tolerance, effort.budget, effort.noise)
     return looked_at_plane(density, leaves, pilot[:_POINTS], effort)
 
 
@@ -133,6 +160,18 @@ def looked_at_plane(density: Density, leaves: Leaves, points: np.ndarray, effort
         leaves = split(density, leaves, cut)
         leaves = refine(density, leaves, effort.tolerance, effort.budget, effort.noise)
     return leaves
+
+
+def unknown(density: Density, leaves: Leaves, points: np.ndarray, effort: Effort) -> np.ndarray:
+    """Return (n,) at which points (n, k) the density is not as the polynomials have it."""
+    value = density(points)
+    if points.shape[1] == 1:
+        curve = curve_of_line(leaves)
+        owner = np.clip(np.searchsorted(curve.breaks, points[:, 0], side="right") - 1, 0, len(curve.breaks) - 2)
+        return _missed(value, curve.density(points[:, 0]), np.diff(curve.breaks)[owner], effort)
+    owner = _owners(leaves, points)
+    volume = np.prod(leaves.high - leaves.low, axis=1)[owner]
+    return (owner < 0) | _missed(value, plane_density(leaves, owner, points), volume, effort)
 
 
 def _owners(leaves: Leaves, points: np.ndarray) -> np.ndarray:

@@ -1,10 +1,10 @@
 """Tests of a mean that hold for every n and every law they allow, where a normal approximation would not.
 
-Non-negative data: bet on the mean being larger than claimed; if the claim is true, the wealth is a martingale that starts at 1 and
-exceeds 1/p with probability p at most (Ville; Waudby-Smith & Ramdas 2024). A mean that is too small cannot be shown without a bound
-on the data: an event too rare to be seen may hold the rest. Where the exact variance v is known, Catoni's (2012) influence function
-serves both sides: with psi(y) = sign(y) log(1 + |y| + y^2/2), the expectation of exp(psi(theta (X - m))) is at most
-exp(theta^2 v / 2).
+Data with a lower bound: bet on the mean being larger than claimed; if the claim is true, the wealth is a martingale that starts at
+1 and exceeds 1/p with probability p at most (Ville; Waudby-Smith & Ramdas 2024). Data with an upper bound: the same of what is left
+below it. A mean on the other side cannot be shown without a bound there: an event too rare to be seen may hold the rest. Where the
+exact variance v is known, Catoni's (2012) influence function serves both sides: with psi(y) = sign(y) log(1 + |y| + y^2/2), the
+expectation of exp(psi(theta (X - m))) is at most exp(theta^2 v / 2). Wealth may be looked at as often as one likes.
 """
 
 from __future__ import annotations
@@ -14,8 +14,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fogproof.checks.statistics.known import Known
+
 _STAKES = 2.0 ** -np.arange(1, 17)  # less than all of the wealth: nothing is lost for good
-_THETAS = np.array([0.5, 1.0, 2.0])
+_THETAS = np.array([0.5, 1.0, 2.0, 4.0])
 
 
 @dataclass(frozen=True)
@@ -23,80 +25,97 @@ class Bets:
     """Wealth of bets against a claimed mean in [low, high], one channel.
 
     low, high  the claim
-    variance   the exact variance of one realisation (an upper bound), or None
+    known      what is declared of one realisation
     samples    how many realisations there will be: it sets the scale of Catoni's test
     alpha      for which it is tuned
-    logs       (k,) logarithms of the wealth of each bet so far
-    least      the smallest number seen: bets on large means need non-negative data
+    logs       logarithms of the wealth so far: one row of bets for each declared fact
     """
 
     low: float
     high: float
-    variance: float | None
+    known: Known
     samples: int
     alpha: float
-    logs: np.ndarray | None = None
-    least: float = math.inf
+    logs: tuple[np.ndarray, ...] = ()
+
+    @property
+    def possible(self) -> bool:
+        """Whether anything is declared that could be bet on."""
+        return math.isfinite(self.known.low) or math.isfinite(self.known.high) or self.known.variance is not None
 
     def after(self, x: np.ndarray) -> Bets:
         """Return the bets after the numbers x (n,)."""
-        logs = self._gains(x)
-        return replace(
-            self, logs=logs if self.logs is None else self.logs + logs, least=min(self.least, float(x.min()))
-        )
+        with np.errstate(over="ignore", under="ignore"):
+            gains = self._gains(x)
+        return replace(self, logs=tuple(a + b for a, b in zip(self.logs, gains, strict=True)) if self.logs else gains)
 
-    def _gains(self, x: np.ndarray) -> np.ndarray:
+    def _gains(self, x: np.ndarray) -> tuple[np.ndarray, ...]:
         gains = []
-        if self.high > 0 and x.min() >= 0 and self.least >= 0:
-            ratio = x / self.high - 1
-            gains += [float(np.sum(np.log1p(stake * ratio))) for stake in _STAKES]
-        else:
-            gains += [-math.inf] * len(_STAKES)
-        if self.variance is not None:
-            for theta in self.thetas:
-                for sign, mean in ((1, self.high), (-1, self.low)):
-                    y = sign * theta * (x - mean)
-                    total = float(np.sum(np.sign(y) * np.log1p(np.abs(y) + 0.5 * y * y)))
-                    gains.append(total - 0.5 * len(x) * theta**2 * self._spread)
-        return np.array(gains)
+        if math.isfinite(self.known.low):
+            gains.append(_stakes(x - self.known.low, self.high - self.known.low))
+        if math.isfinite(self.known.high):
+            gains.append(_stakes(self.known.high - x, self.known.high - self.low))
+        if self.known.deviation is not None and self._spread > 0:
+            gains.append(self._catoni(x))
+        return tuple(gains)
+
+    def _catoni(self, x: np.ndarray) -> np.ndarray:
+        middle, half, totals = 0.5 * (self.low + self.high), 0.5 * (self.high - self.low), []
+        for theta in self._thetas:
+            y = theta * (x - middle)
+            size = np.abs(y)
+            total = float(np.sum(np.copysign(np.log1p(size + 0.5 * size * size), y)))
+            # psi grows no faster than its argument: the error of the claim costs theta times as much at most.
+            rest = len(x) * theta * (half + 0.5 * theta * self._spread**2)
+            totals += [total - rest, -total - rest]
+        return np.array(totals)
 
     @property
     def _spread(self) -> float:
-        """Bound on the mean square about either end of the claim."""
-        return (self.variance or 0.0) + (self.high - self.low) ** 2
+        """Bound on the root mean square about either end of the claim."""
+        return math.hypot(self.known.deviation or 0.0, self.high - self.low)
 
     @property
-    def thetas(self) -> np.ndarray:
+    def _needed(self) -> float:
+        return math.log(2 * len(_THETAS) / self.alpha)
+
+    @property
+    def _thetas(self) -> np.ndarray:
         """Scales of Catoni's function, about the best one for this number of samples."""
-        if self._spread <= 0:
-            return np.empty(0)
-        return _THETAS * math.sqrt(2 * math.log(2 * len(_THETAS) / self.alpha) / (self.samples * self._spread))
+        return _THETAS * (math.sqrt(2 * self._needed / self.samples) / self._spread)
 
     @property
     def p_value(self) -> float:
         """The reciprocal of the average wealth: a valid p-value for every n."""
-        if self.logs is None:
+        if not self.logs:
             return 1.0
-        sides = [self.logs[: len(_STAKES)], self.logs[len(_STAKES) :]]
-        sides = [side for side in sides if len(side) and np.max(side) > -math.inf]
-        if not sides:
-            return 1.0
-        logs = [_log_mean(side) for side in sides]
-        return min(1.0, math.exp(-max(min(_log_mean(np.array(logs)), 700.0), 0.0)))
+        wealth = _log_mean(np.array([_log_mean(row) for row in self.logs]))
+        return min(1.0, math.exp(-max(min(wealth, 700.0), 0.0)))
 
-    @property
-    def two_sided(self) -> bool:
-        """Whether a mean that is too small would be found too."""
-        return self.variance is not None
+    def detectable(self, miss: float) -> float:
+        """Return the bias that Catoni's test finds but for the probability `miss`, whatever the law; inf without a variance.
 
-    def detectable(self, miss_quantile: float) -> float:
-        """Return the bias that Catoni's test finds but for the probability of that normal quantile."""
-        sigma = math.sqrt(self._spread / self.samples)
-        return (math.sqrt(2 * math.log(2 * len(_THETAS) / self.alpha)) + miss_quantile) * sigma + (self.high - self.low)
+        With probability 1 - miss the sum of psi is at least n (theta b - theta^2 (v + b^2) / 2) - log(1 / miss).
+        """
+        if self.known.variance is None or self._spread == 0:
+            return math.inf
+        root = math.sqrt(2 * self._needed)
+        reach = (2 * self._needed + root * root / 2 + math.log(max(len(self.logs), 1) / miss)) / root
+        bias = reach * self._spread / math.sqrt(self.samples)
+        own = 1 + (bias / self._spread) ** 2
+        return bias * own + (self.high - self.low)
+
+
+def _stakes(above: np.ndarray, claim: float) -> np.ndarray:
+    """Return the gains of bets that numbers >= 0 have a larger mean than claimed."""
+    if claim <= 0:
+        return np.full(len(_STAKES), math.inf if np.max(above) > 0 else 0.0)
+    ratio = above / claim - 1
+    return np.array([float(np.sum(np.log1p(stake * ratio))) for stake in _STAKES])
 
 
 def _log_mean(logs: np.ndarray) -> float:
     largest = float(np.max(logs))
-    if largest == -math.inf:
+    if math.isinf(largest):
         return largest
     return largest + math.log(float(np.mean(np.exp(logs - largest))))

@@ -1,90 +1,253 @@
-"""Are realisations independent? Runs of large values, and whole stretches that occur twice.
+"""Are realisations independent? Neighbours at several distances, mirrored halves, the spread of calls, and what occurs twice.
 
-Both hold whatever the law of the values: standard errors of correlated realisations are wrong even where the mean is right.
+All hold whatever the law of the values: standard errors of dependent realisations are wrong even where the mean is right.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from fogproof.checks.statistics.tails import normal_two_sided
+from fogproof.checks.statistics.goodness import binomial_p
+from fogproof.checks.statistics.moments import Moments
+from fogproof.checks.statistics.tails import binomial_at_least, binomial_at_most, gamma_above, normal_two_sided
 from fogproof.checks.verdict import Finding, Outcome
 
+LAGS = (1, 2, 3, 4, 8, 16, 32, 64)
+_WAYS = (*(f"{lag} apart" for lag in LAGS), "half a call apart", "mirrored in their call")
 _WINDOW = 64  # realisations of a stretch
+_SOME = np.uint64(63)  # a stretch begins where so many bits of a fingerprint are zero, wherever that is
 _MOST_WINDOWS = 1 << 14  # remembered
 _CHANCE = 1e-12  # a repetition less likely than this is none
+_REMEMBERED = 1 << 17  # realisations whose fingerprints are kept
+_MANY = 1e4  # expected pairs of large values: the normal law is then accurate far into its tail
+_NEARLY_NORMAL = (
+    0.02  # skewness, and excess kurtosis, of the mean of a call whose scatter is tested by chi-square's law
+)
 
 
 @dataclass(frozen=True)
 class Succession:
-    """How values x (n,) follow each other.
+    """How values x (n, channels) follow each other.
 
-    threshold  between small and large values
-    large      how many are large
-    pairs      how many successions were looked at, and `both` how many were of two large values
-    alike      how many values equalled the next one
-    windows    fingerprints of stretches of 64 values
+    threshold  (channels,) between small and large values
+    n          how many realisations
+    large      (channels,) how many are large
+    pairs      (ways,) how many pairs were looked at, and `both` (ways, channels) how many were of two large values
+    alike      how many realisations equalled the next one
+    windows    fingerprints of stretches of 64 realisations
+    prints     fingerprints of realisations, and `calls` the calls that they came from
+    means      size and (channels,) mean of every call
     """
 
-    threshold: float
+    threshold: np.ndarray
     n: int = 0
-    large: int = 0
-    pairs: int = 0
-    both: int = 0
+    large: np.ndarray = field(default_factory=lambda: np.zeros(1, dtype=np.int64))
+    pairs: np.ndarray = field(default_factory=lambda: np.zeros(len(_WAYS), dtype=np.int64))
+    both: np.ndarray = field(default_factory=lambda: np.zeros((len(_WAYS), 1), dtype=np.int64))
     alike: int = 0
     windows: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=np.uint64))
+    prints: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=np.uint64))
+    calls: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=np.int64))
+    means: tuple[tuple[int, np.ndarray], ...] = ()
 
-    def after(self, x: np.ndarray) -> Succession:
-        """Return the record after one more batch; its first value is not taken for the successor of the last one."""
-        large = x > self.threshold
-        windows = self.windows
-        whole = len(x) // _WINDOW * _WINDOW
-        if len(windows) < _MOST_WINDOWS and whole:
-            windows = np.concatenate([windows, _fingerprints(x[:whole].reshape(-1, _WINDOW))])[:_MOST_WINDOWS]
-        return Succession(
-            self.threshold,
-            self.n + len(x),
-            self.large + int(np.count_nonzero(large)),
-            self.pairs + max(len(x) - 1, 0),
-            self.both + int(np.count_nonzero(large[1:] & large[:-1])),
-            self.alike + int(np.count_nonzero(x[1:] == x[:-1])),
-            windows,
+    @staticmethod
+    def about(first: np.ndarray) -> Succession:
+        """Return the empty record for an estimator whose first batch is (n, channels)."""
+        if len(first) == 0:
+            return Succession(np.zeros(first.shape[1]))
+        # The middle of few values is one of them: what is larger must not be what is never drawn.
+        middle = np.quantile(first, 0.5, axis=0, method="lower")
+        return Succession(np.where(middle == first.max(axis=0), np.nextafter(middle, -np.inf), middle))
+
+    def after(self, x: np.ndarray, sizes: Sequence[int]) -> Succession:
+        """Return the record after one more batch (n, channels), drawn in calls of these sizes."""
+        large, prints = x > self.threshold, fingerprints(x)
+        pairs, both, means, windows = self.pairs.copy(), self.both + np.zeros((1, x.shape[1]), dtype=np.int64), [], []
+        alike, start = self.alike, 0
+        for size in sizes:
+            here = slice(start, start + size)
+            start += size
+            one = large[here]
+            for way, (left, right) in enumerate(_paired(one)):
+                pairs[way] += len(left)
+                both[way] += np.count_nonzero(left & right, axis=0)
+            alike += int(np.count_nonzero(prints[here][1:] == prints[here][:-1]))
+            means.append((size, np.mean(x[here], axis=0)))
+            windows.append(_stretches(prints[here]))
+        room = max(_REMEMBERED - len(self.prints), 0)
+        calls = np.repeat(np.arange(len(sizes)) + len(self.means), sizes)
+        return replace(
+            self,
+            n=self.n + len(x),
+            large=self.large + np.count_nonzero(large, axis=0),
+            pairs=pairs,
+            both=both,
+            alike=alike,
+            windows=np.concatenate([self.windows, *windows])[:_MOST_WINDOWS],
+            prints=np.concatenate([self.prints, prints[:room]]),
+            calls=np.concatenate([self.calls, calls[:room]]),
+            means=(*self.means, *means),
         )
 
 
-def _fingerprints(rows: np.ndarray) -> np.ndarray:
+def _paired(large: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+    n, half = len(large), len(large) // 2
+    pairs = [(large[:-lag], large[lag:]) if lag < n else (large[:0], large[:0]) for lag in LAGS]
+    return [*pairs, (large[:half], large[half : 2 * half]), (large[:half], large[::-1][:half])]
+
+
+def fingerprints(rows: np.ndarray) -> np.ndarray:
+    """Return (n,) uint64 of rows (n, channels): equal rows have equal ones."""
     bits = np.ascontiguousarray(rows + 0.0).view(np.uint64)
     with np.errstate(over="ignore"):
         total = np.zeros(len(rows), dtype=np.uint64)
         for column in bits.T:
-            mixed = (column ^ (column >> np.uint64(32))) * np.uint64(0x9E3779B97F4A7C15)
-            total = (total ^ (mixed >> np.uint64(29))) * np.uint64(0xC2B2AE3D27D4EB4F) + mixed
+            total = _mixed(total * np.uint64(0xD6E8FEB86659FD93) + column)
+        return total
+
+
+def _mixed(x: np.ndarray) -> np.ndarray:
+    x = (x ^ (x >> np.uint64(32))) * np.uint64(0x9E3779B97F4A7C15)
+    x = (x ^ (x >> np.uint64(29))) * np.uint64(0xC2B2AE3D27D4EB4F)
+    return x ^ (x >> np.uint64(32))
+
+
+def _stretches(prints: np.ndarray) -> np.ndarray:
+    """Return fingerprints of stretches that begin where the values themselves say so: a copy may begin anywhere."""
+    if len(prints) < _WINDOW:
+        return prints[:0]
+    with np.errstate(over="ignore"):
+        several = _mixed(
+            prints[:-3] + np.uint64(3) * prints[1:-2] + np.uint64(5) * prints[2:-1] + np.uint64(7) * prints[3:]
+        )
+        starts = np.flatnonzero((several[: len(prints) - _WINDOW + 1] & _SOME) == 0)[: _MOST_WINDOWS // 4]
+        total = np.zeros(len(starts), dtype=np.uint64)
+        for i in range(_WINDOW):
+            total = _mixed(total + prints[starts + i])
     return total
 
 
 def runs_test(name: str, record: Succession, alpha: float) -> Finding:
-    """Test that a large value is followed by a large one as often as by a small one (Wald & Wolfowitz 1940)."""
-    share = record.large / max(record.n, 1)
-    spread = share * (1 - share)
-    if record.pairs * spread**2 < 25:
+    """Test that a large value is accompanied by a large one as often as by a small one (Wald & Wolfowitz 1940).
+
+    Every distance and channel is asked, and the smallest p-value is multiplied by how many were.
+    """
+    found = [
+        (p, correlation, z, f"{where}{f', channel {channel}' if len(record.large) > 1 else ''}")
+        for way, where in enumerate(_WAYS)
+        for channel in range(len(record.large))
+        for p, correlation, z in [_concordance(record, way, channel)]
+    ]
+    p, correlation, z, where = min(found, key=lambda one: (one[0], -abs(one[1])))
+    if all(one[2] == 0 for one in found):
         return Finding(name, "not rejected", "too few large or small values to see a correlation", 1.0, alpha)
-    correlation = (record.both / record.pairs - share**2) / spread
-    z = correlation * math.sqrt(record.pairs)
-    p = normal_two_sided(z)
+    p = min(1.0, p * len(found))
     outcome: Outcome = "rejected" if p <= alpha else "not rejected"
-    message = f"correlation of successive realisations, large against small, is {correlation:+.3g}"
+    message = f"correlation of realisations {where}, large against small, is {correlation:+.3g}"
     cause = "correlation" if outcome == "rejected" else ""
     return Finding(name, outcome, message, p, alpha, False, z, correlation, cause=cause)
 
 
+def _concordance(record: Succession, way: int, channel: int) -> tuple[float, float, float]:
+    """Return the p-value, the correlation and its z of one way to pair realisations; (1, 0, 0) where there is little to see."""
+    pairs, both = int(record.pairs[way]), int(record.both[way, channel])
+    share = int(record.large[channel]) / max(record.n, 1)
+    spread = share * (1 - share)
+    if pairs * spread**2 < 25:
+        return 1.0, 0.0, 0.0
+    correlation = (both / pairs - share**2) / spread
+    z = correlation * math.sqrt(pairs)
+    p = normal_two_sided(z)
+    if (
+        pairs * spread**2 < _MANY
+    ):  # of a large value's companions so many are large: hypergeometric, bounded by the binomial law
+        ones = round(pairs * share)
+        p = max(p, min(1.0, 2 * min(binomial_at_least(both, ones, share), binomial_at_most(both, ones, share))))
+    return p, correlation, z
+
+
+def spread_of_calls(name: str, record: Succession, data: Sequence[Moments], alpha: float) -> Finding | None:
+    """Test that means of whole calls scatter as those of independent realisations: chi-square, both ways.
+
+    Stratified or antithetic realisations scatter less, dependent ones more, in whatever order they are returned. None where
+    there are too few calls large enough for their means to be about normal.
+    """
+    worst: tuple[float, float, int] | None = None
+    channels = 0
+    for channel, moments in enumerate(data):
+        calls = [(n, float(mean[channel])) for n, mean in record.means if _nearly_normal(moments, n)]
+        if len(calls) < 4:
+            continue
+        channels += 1
+        sizes = np.array([n for n, _ in calls], dtype=float)
+        offs = (np.array([mean for _, mean in calls]) - moments.mean) / moments.deviation
+        offs -= np.sum(sizes * offs) / np.sum(sizes)
+        statistic, freedom = float(np.sum(sizes * offs**2)), len(calls) - 1
+        p = min(1.0, 2 * min(gamma_above(0.5 * freedom, 0.5 * statistic), _gamma_below(0.5 * freedom, 0.5 * statistic)))
+        if worst is None or p < worst[0]:
+            worst = (p, statistic / freedom, len(calls))
+    if worst is None:
+        return None
+    p = min(1.0, worst[0] * channels)
+    rejected = p <= alpha
+    message = f"means of {worst[2]} calls vary {worst[1]:.3g} times as much as those of independent realisations"
+    message += "; realisations of one call depend on each other" if rejected else ""
+    outcome: Outcome = "rejected" if rejected else "not rejected"
+    return Finding(name, outcome, message, p, alpha, False, worst[1], worst[1], cause="correlation" if rejected else "")
+
+
+def _nearly_normal(data: Moments, n: int) -> bool:
+    if data.m2 <= 0 or n < 8:
+        return False
+    kurtosis = data.n * data.m4 / data.m2**2 - 3
+    return abs(data.skewness) / math.sqrt(n) < _NEARLY_NORMAL and abs(kurtosis) / n < _NEARLY_NORMAL
+
+
+def _gamma_below(shape: float, x: float) -> float:
+    from scipy.special import gammainc
+
+    return float(gammainc(shape, x))
+
+
+def repeats_within_calls(name: str, record: Succession, alpha: float) -> Finding | None:
+    """Test that a value which occurs twice does so within one call as rarely as the sizes of the calls say.
+
+    Of values that come up by chance, any two occurrences are equally likely to be any two realisations; realisations that are
+    returned twice lie in one call, those of a generator that starts again lie in two. None where nothing occurs twice.
+    """
+    n = len(record.prints)
+    counts = np.bincount(record.calls) if n else np.zeros(1)
+    chance = float(np.sum(counts * (counts - 1.0))) / max(n * (n - 1.0), 1.0)
+    if n < 2 or not 0 < chance < 1:
+        return None
+    shuffled = np.random.default_rng(n).permutation(n)
+    order = shuffled[np.argsort(record.prints[shuffled], kind="stable")]
+    prints, calls = record.prints[order], record.calls[order]
+    equal = prints[1:] == prints[:-1]
+    first = equal & ~np.concatenate([[False], equal[:-1]])  # the first pair of every value that occurs more than once
+    pairs = int(np.count_nonzero(first))
+    if pairs < 2:
+        return None
+    together = int(np.count_nonzero(calls[1:][first] == calls[:-1][first]))
+    p = binomial_p(together, pairs, chance, chance)
+    rejected = p <= alpha
+    message = (
+        f"{pairs} values occur more than once in {n}, {together} of them in one call, by chance {chance * pairs:.3g}"
+    )
+    outcome: Outcome = "rejected" if rejected else "not rejected"
+    effect = together / pairs - chance
+    return Finding(name, outcome, message, p, alpha, False, together, effect, cause="correlation" if rejected else "")
+
+
 def repeated_stretches(name: str, record: Succession) -> Finding | None:
     """Return whether stretches of 64 realisations occur twice, where chance alone would not explain one; else None."""
-    alike = (record.alike + 1) / (record.pairs + 1)
+    alike = (record.alike + 1) / (int(record.pairs[0]) + 1)
     windows = len(record.windows)
-    chance = 0.5 * windows**2 * alike**_WINDOW
+    chance = 0.5 * windows**2 * alike ** (_WINDOW - 4)
     if windows < 2 or chance > _CHANCE:
         return None
     repeats = windows - len(np.unique(record.windows))

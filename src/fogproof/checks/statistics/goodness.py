@@ -131,7 +131,7 @@ def chi_square(
     2e-6, its deviance says 2e-6 too, and its square 7e-8.
     """
     n = int(counts.sum())
-    groups = _pool(n * mass.ravel(), _LEAST)
+    groups = pooled(n * mass.ravel(), _LEAST)
     columns = (counts, n * mass, n * mass_error, n * blur)
     observed, expected, error, rounding = (np.bincount(groups, values.ravel()) for values in columns)
     cells = len(observed)
@@ -196,7 +196,7 @@ def nothing_counted(name: str, alpha: float) -> Finding:
     return Finding(name, "inconclusive", "no sample belongs to the continuous part", alpha=alpha)
 
 
-def _pool(expected: np.ndarray, least: float) -> np.ndarray:
+def pooled(expected: np.ndarray, least: float) -> np.ndarray:
     """Return a group number for each cell; consecutive cells share one until its expectation reaches `least`."""
     if len(expected) and expected.min() >= least:
         return np.arange(len(expected))

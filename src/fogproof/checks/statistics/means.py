@@ -1,156 +1,129 @@
-"""Does a mean equal its reference? Moments merged batch by batch, and a test that knows where it does not hold.
+"""Does a mean equal its reference? A test that knows where it does not hold.
 
 Data of two values (hit or miss) get the exact binomial test. Anything else gets Student's t, whose far tail is wrong by the factor
 exp(|skewness| z^3 / (3 sqrt n)) to leading order (Edgeworth's expansion of the studentised mean, Hall 1987): the p-value is
-multiplied by that factor, and where it is large, or one sample dominates the variance, the verdict is inconclusive.
+multiplied by that factor, and where it is large, or one sample dominates the variance, or the sample varies less than declared, the
+verdict is inconclusive. What is declared (`Known`) is tested beside it, whatever the law.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
-from typing import Any
+from dataclasses import replace
 
-import numpy as np
-
+from fogproof.checks.statistics.extremes import detectable, extremes_p
 from fogproof.checks.statistics.goodness import MISS, binomial_p
+from fogproof.checks.statistics.known import NOTHING, Known
+from fogproof.checks.statistics.light import light_tailed_p, light_tailed_reach
+from fogproof.checks.statistics.moments import Moments
+from fogproof.checks.statistics.power import binomial_reach, student_reach
 from fogproof.checks.statistics.tails import normal_quantile, student_two_sided
 from fogproof.checks.verdict import Finding, Interval, Outcome, Resolution
 
 LARGEST_CORRECTION = 1.0  # of the exponent |skewness| z^3 / (3 sqrt n); beyond it the expansion is not trusted
 LARGEST_SHARE = 0.05  # of one sample in the sum of squares; beyond it the variance itself may be infinite
-
-
-@dataclass
-class Moments:
-    """Count, mean and central moments of a stream of numbers; merging in a fixed order gives the same bits every time."""
-
-    n: int = 0
-    mean: float = 0.0
-    m2: float = 0.0
-    m3: float = 0.0
-    m4: float = 0.0
-    low: float = math.inf
-    high: float = -math.inf
-    values: dict[float, int] | None = field(default_factory=dict)  # counts while at most two values have been seen
-
-    @staticmethod
-    def of(x: np.ndarray) -> Moments:
-        """Return the moments of one batch (n,)."""
-        mean = float(np.mean(x))
-        d = x - mean
-        d2 = d * d
-        low, high = float(np.min(x)), float(np.max(x))
-        at_low, at_high = int(np.count_nonzero(x == low)), int(np.count_nonzero(x == high))
-        values = {low: at_low, high: at_high} if low == high or at_low + at_high == len(x) else None
-        sums = (float(np.sum(d2)), float(np.sum(d2 * d)), float(np.sum(d2 * d2)))
-        return Moments(len(x), mean, *sums, low, high, values)
-
-    def merged(self, other: Moments) -> Moments:
-        """Return the moments of both streams together (Pébay 2008)."""
-        if self.n == 0:
-            return other
-        n, na, nb = self.n + other.n, self.n, other.n
-        d = other.mean - self.mean
-        dn = d / n
-        m2 = self.m2 + other.m2 + d * dn * na * nb
-        m3 = self.m3 + other.m3 + d * dn**2 * na * nb * (na - nb) + 3 * dn * (na * other.m2 - nb * self.m2)
-        m4 = (
-            self.m4
-            + other.m4
-            + d * dn**3 * na * nb * (na * na - na * nb + nb * nb)
-            + 6 * dn**2 * (na * na * other.m2 + nb * nb * self.m2)
-            + 4 * dn * (na * other.m3 - nb * self.m3)
-        )
-        values = None
-        if self.values is not None and other.values is not None:
-            values = {v: self.values.get(v, 0) + other.values.get(v, 0) for v in {**self.values, **other.values}}
-            values = values if len(values) <= 2 else None
-        low, high = min(self.low, other.low), max(self.high, other.high)
-        return Moments(n, self.mean + dn * nb, m2, m3, m4, low, high, values)
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the JSON-ready form, which keeps every bit."""
-        values = None if self.values is None else [[float.hex(v), count] for v, count in self.values.items()]
-        names = ("mean", "m2", "m3", "m4", "low", "high")
-        return {"n": self.n, "values": values, **{name: float.hex(getattr(self, name)) for name in names}}
-
-    @staticmethod
-    def from_dict(state: dict[str, Any]) -> Moments:
-        """Return the moments that `to_dict` wrote."""
-        values = state["values"]
-        values = None if values is None else {float.fromhex(v): count for v, count in values}
-        mean, m2, m3, m4, low, high = (float.fromhex(state[name]) for name in ("mean", "m2", "m3", "m4", "low", "high"))
-        return Moments(state["n"], mean, m2, m3, m4, low, high, values)
-
-    @property
-    def variance(self) -> float:
-        """Unbiased sample variance."""
-        return self.m2 / (self.n - 1) if self.n > 1 else 0.0
-
-    @property
-    def stderr(self) -> float:
-        """Standard error of the mean."""
-        return math.sqrt(self.variance / self.n) if self.n else math.inf
-
-    @property
-    def skewness(self) -> float:
-        """Sample skewness."""
-        return math.sqrt(self.n) * self.m3 / self.m2**1.5 if self.m2 > 0 else 0.0
-
-    @property
-    def largest_share(self) -> float:
-        """Share of the sum of squares that the most extreme sample has."""
-        return max(self.high - self.mean, self.mean - self.low) ** 2 / self.m2 if self.m2 > 0 else 0.0
+_ROUNDING = 16 * 2.0**-53  # relative: of values, and of their sum
+_LEAST = 8  # samples, below which none but declared facts tells anything
+_SHORT = 4.0  # standard deviations by which a sample's variance may fall short of the declared one
+LAWLESS = 0.1  # share of alpha for declared facts, which hold whatever the law
 
 
 def mean_test(
-    name: str, what: str, data: Moments, reference: float, error: float, alpha: float, cause: str = "bias"
+    name: str,
+    what: str,
+    data: Moments,
+    reference: float,
+    error: float,
+    alpha: float,
+    cause: str = "bias",
+    known: Known = NOTHING,
 ) -> Finding:
     """Test that the expectation behind `data` lies within `error` of `reference`."""
     if data.n == 0:
         return Finding(name, "inconclusive", f"{what}: there are no data", alpha=alpha)
-    if data.values is not None and len(data.values) == 1:
-        finding = _constant(name, what, data, reference, error, alpha)
-    elif data.values is not None:
-        finding = _two_values(name, what, data, reference, error, alpha)
+    share = alpha if known == replace(NOTHING, light=known.light) else (1 - LAWLESS) * alpha
+    if data.low == data.high:
+        finding = _constant(name, what, data, reference, error, share, known)
+    elif _two_valued(data):
+        finding = _two_values(name, what, data, reference, error, share)
     else:
-        finding = _student(name, what, data, reference, error, alpha)
+        finding = _student(name, what, data, reference, error, share, known)
+    if share < alpha and finding.outcome != "rejected":
+        finding = _lawless(finding, what, data, reference, error, alpha - share, known)
+    if finding.outcome == "not rejected" and error > abs(reference) and error > data.stderr:
+        message = (
+            f"{finding.message}; the reference is known too coarsely, to within {error:.2g}, to tell it from nothing"
+        )
+        finding = replace(finding, outcome="inconclusive", message=message, p_value=None, resolution=None)
     reach = normal_quantile(0.5 * MISS) * data.stderr
     effect = data.mean - reference
-    interval = Interval(effect - reach, effect + reach, 1 - MISS)
+    interval = Interval(effect - reach, effect + reach, 1 - MISS) if math.isfinite(reach) else None
     rejected = finding.outcome == "rejected"
+    if rejected and finding.p_value is not None and known.variance is None and not known.bounded:
+        finding = replace(finding, message=finding.message + unseen(data, effect, error, alpha))
     return replace(finding, interval=interval, cause=cause if rejected else "", region=_side(effect, rejected))
+
+
+def unseen(data: Moments, effect: float, error: float, alpha: float) -> str:
+    """Return in words what an event that was never seen would have to be, to explain the effect."""
+    size = unseen_size(data, effect, error, alpha)
+    rarest = math.log(1 / alpha) / data.n
+    if rarest >= 1:
+        return ""
+    return (
+        f"; an event unseen in {data.n} (probability below {rarest:.1g}) would have to bring {size:+.2g} to explain it"
+    )
+
+
+def unseen_size(data: Moments, effect: float, error: float, alpha: float) -> float:
+    """Return how far from the mean an unseen event would have to lie: a likelier one would have been seen but for alpha."""
+    gap = max(abs(effect) - error, 0.0)
+    return math.copysign(gap * (data.n / math.log(1 / alpha)), -effect)
 
 
 def _side(effect: float, rejected: bool) -> tuple[str, ...]:
     return (("too large" if effect > 0 else "too small"),) if rejected else ()
 
 
-def trusted(data: Moments, alpha: float) -> bool:
-    """Return whether Student's test may be used at alpha: two values are tested exactly, skewed ones need many samples."""
-    if data.values is not None or data.m2 == 0:
+def trusted(data: Moments, alpha: float, known: Known = NOTHING) -> bool:
+    """Return whether the usual test may be used at alpha: skewed values need many samples, and rare ones must be among them."""
+    if short_of_variance(data, known):
+        return False
+    if _two_valued(data) or data.m2 == 0:
         return True
+    if data.n < _LEAST:
+        return False
     growth = abs(data.skewness) / (3 * math.sqrt(data.n)) * normal_quantile(alpha / 2) ** 3
     return growth <= LARGEST_CORRECTION and data.largest_share <= LARGEST_SHARE
 
 
-def _resolution(what: str, data: Moments, error: float, alpha: float) -> Resolution:
-    reach = normal_quantile(alpha / 2) + normal_quantile(MISS)
-    return Resolution(f"bias of {what}", reach * data.stderr + error, MISS)
+def short_of_variance(data: Moments, known: Known) -> bool:
+    """Return whether the sample varies less than declared: something that matters has not been seen yet."""
+    if known.deviation is None or data.n < 2:
+        return False
+    square = data.m2 / data.n
+    spread = math.sqrt(max(data.m4 / data.n - square * square, 0.0) / data.n)
+    return square + _SHORT * spread < (known.deviation / data.scale) ** 2 * (1 - 1e-9)
 
 
-def _constant(name: str, what: str, data: Moments, reference: float, error: float, alpha: float) -> Finding:
+def _two_valued(data: Moments) -> bool:
+    """Return whether there are two values, each of which came back: one that came once may be any of many."""
+    return data.values is not None and len(data.values) == 2 and min(data.values.values()) > 1
+
+
+def _constant(
+    name: str, what: str, data: Moments, reference: float, error: float, alpha: float, known: Known
+) -> Finding:
     gap = abs(data.mean - reference)
     if gap <= error + 1e-12 * abs(reference):
         message = f"{what}: all {data.n} samples equal the reference {reference:.12g}"
-        return Finding(
-            name, "not rejected", message, None, alpha, effect=gap, resolution=Resolution(f"bias of {what}", error, 0)
+        return Finding(name, "not rejected", message, None, alpha, effect=gap)
+    message = f"{what}: all {data.n} samples are {data.mean:.12g} and the reference is {reference:.12g}"
+    if not known.two_sided:
+        message += f"; an event too rare to be seen looks the same as a bias{unseen(data, data.mean - reference, error, alpha)}"
+        message += (
+            ". Declare variance=0 if the estimator has none, its exact variance=, or bounds=(low, high) of its values"
         )
-    message = (
-        f"{what}: all {data.n} samples are {data.mean:.12g} and the reference is {reference:.12g}; an event too rare to be seen"
-        " looks the same as a bias, so ask for more samples, or declare variance=0 if the estimator has none"
-    )
     return Finding(name, "inconclusive", message, None, alpha, effect=data.mean - reference)
 
 
@@ -158,36 +131,70 @@ def _two_values(name: str, what: str, data: Moments, reference: float, error: fl
     assert data.values is not None
     (low, _), (high, count) = sorted(data.values.items())
     step = high - low
-    p = binomial_p(count, data.n, (reference - error - low) / step, (reference + error - low) / step)
+    claim = (reference - error - low) / step, (reference + error - low) / step
+    p = binomial_p(count, data.n, *claim) if claim[0] <= 1 and claim[1] >= 0 else 0.0
     outcome: Outcome = "rejected" if p <= alpha else "not rejected"
     message = f"{what} {data.mean:.7g}, reference {reference:.7g} (exact binomial test of its two values)"
     effect = data.mean - reference
-    return Finding(name, outcome, message, p, alpha, False, effect, effect, _resolution(what, data, error, alpha))
+    inside = min(max(claim[0], 0.0), 1.0), min(max(claim[1], 0.0), 1.0)
+    reach = binomial_reach(data.n, *inside, alpha) * step + error
+    resolution = Resolution(f"bias of {what}", reach, MISS)
+    return Finding(name, outcome, message, p, alpha, False, effect, effect, resolution)
 
 
-def _student(name: str, what: str, data: Moments, reference: float, error: float, alpha: float) -> Finding:
-    gap = max(abs(data.mean - reference) - error, 0.0)
+def _student(
+    name: str, what: str, data: Moments, reference: float, error: float, alpha: float, known: Known
+) -> Finding:
+    gap = max(abs(data.mean - reference) - error - _ROUNDING * max(abs(data.mean), abs(reference)), 0.0)
     z = gap / data.stderr
     needed = normal_quantile(alpha / 2)
     growth = abs(data.skewness) / (3 * math.sqrt(data.n))
-    p_normal = student_two_sided(data.n - 1, z)
     effect = data.mean - reference
-    message = (
-        f"{what} {data.mean:.7g} +- {data.stderr:.2g}, reference {reference:.7g} (z = {effect / data.stderr:+.2f})"
-    )
-    if not trusted(data, alpha):
-        enough = math.ceil(data.n * max(growth * needed**3 / LARGEST_CORRECTION, 1) ** 2)
-        message += (
-            f"; too skewed for a test at alpha = {alpha:.1g} (skewness {data.skewness:.3g}, the largest sample has"
-            f" {data.largest_share:.1%} of the variance): ask for about {max(enough, 4 * data.n)} samples"
-        )
-        return Finding(
-            name, "inconclusive", message, None, alpha, False, z, effect, _resolution(what, data, error, alpha)
-        )
-    p = _corrected(p_normal, growth, z, needed)
+    message = f"{what} {data.mean:.7g} +- {data.stderr:.2g}, reference {reference:.7g}"
+    if math.isfinite(effect / data.stderr):
+        message += f" (z = {effect / data.stderr:+.2f})"
+    light = known.light and data.n > 1 and not short_of_variance(data, known)
+    if not (light or trusted(data, alpha, known)):
+        message += _why_not(data, alpha, known, growth * needed**3, effect, error)
+        return Finding(name, "inconclusive", message, None, alpha, False, z, effect)
+    p = light_tailed_p(data.n, z) if light else _corrected(student_two_sided(data.n - 1, z), growth, z, needed)
     outcome: Outcome = "rejected" if p <= alpha else "not rejected"
-    exact = growth * needed**3 < 0.3 and error < 0.01 * data.stderr
-    return Finding(name, outcome, message, p, alpha, exact, z, effect, _resolution(what, data, error, alpha))
+    exact = not light and growth * needed**3 < 0.3 and error < 0.01 * data.stderr
+    reach = light_tailed_reach(data.n, alpha) * data.stderr if light else student_reach(data, alpha)
+    resolution = Resolution(f"bias of {what}", reach + error, MISS) if math.isfinite(reach) else None
+    if light:
+        message += ", its tails declared to be light"
+    return Finding(name, outcome, message, p, alpha, exact, z, effect, resolution)
+
+
+def _why_not(data: Moments, alpha: float, known: Known, exponent: float, effect: float, error: float) -> str:
+    if short_of_variance(data, known):
+        return f"; the sample varies by {data.deviation:.3g}, less than the declared {known.deviation:.3g}: rare values are missing"
+    enough = math.ceil(data.n * max(exponent / LARGEST_CORRECTION, 1) ** 2)
+    said = (
+        f"; too skewed for a test at alpha = {alpha:.1g} (skewness {data.skewness:.3g}, the largest sample has"
+        f" {data.largest_share:.1%} of the variance): ask for about {max(enough, 4 * data.n)} samples"
+    )
+    if not known.two_sided:
+        said += ', or declare bounds=(low, high), the exact variance=, or tails="light"'
+    return said + unseen(data, effect, error, alpha)
+
+
+def _lawless(
+    finding: Finding, what: str, data: Moments, reference: float, error: float, alpha: float, known: Known
+) -> Finding:
+    """Return the finding after the tests that hold for every law have had their say."""
+    p = extremes_p(data, reference - error, reference + error, known)
+    effect = data.mean - reference
+    if p <= alpha:
+        message = f"{finding.message.partition(';')[0]}; decided by {known.words()}, whatever the law"
+        return replace(finding, outcome="rejected", message=message, p_value=p, alpha=alpha, exact=False, effect=effect)
+    if finding.outcome == "inconclusive" and known.bounded:
+        reach = detectable(data.n, known, alpha, MISS) + error
+        message = f"{finding.message.partition(';')[0]}; within {known.words()} chance explains it"
+        resolution = Resolution(f"bias of {what}", reach, MISS)
+        return replace(finding, outcome="not rejected", message=message, p_value=p, alpha=alpha, resolution=resolution)
+    return finding
 
 
 def _corrected(p_normal: float, growth: float, z: float, needed: float) -> float:

@@ -14,17 +14,23 @@ from typing import Annotated
 
 from fogproof.scene.kinds import ByKind
 from fogproof.scene.lights.directional import DirectionalLight
+from fogproof.scene.lights.disk import DiskLight
 from fogproof.scene.lights.environment import Environment
 from fogproof.scene.lights.point import PointLight
+from fogproof.scene.lights.rectangle import RectangleLight
+from fogproof.scene.lights.sphere import SphereLight
 from fogproof.scene.lights.spot import SpotLight
 from fogproof.validate import Channels
 
-Light = PointLight | SpotLight | DirectionalLight | Environment
+Light = PointLight | SpotLight | DirectionalLight | Environment | SphereLight | RectangleLight | DiskLight
 KINDS: dict[str, type[Light]] = {
     "point": PointLight,
     "spot": SpotLight,
     "directional": DirectionalLight,
     "environment": Environment,
+    "sphere": SphereLight,
+    "rectangle": RectangleLight,
+    "disk": DiskLight,
 }
 """The `kind` of each light in files and requests; without one a light is a point."""
 

@@ -9,13 +9,16 @@ from fogproof.scene.kinds import ByKind
 from fogproof.scene.phase.cornette_shanks import CornetteShanks
 from fogproof.scene.phase.double_henyey_greenstein import DoubleHenyeyGreenstein
 from fogproof.scene.phase.draine import Draine
+from fogproof.scene.phase.fournier_forand import FournierForand
 from fogproof.scene.phase.hazy import Hazy
 from fogproof.scene.phase.henyey_greenstein import HenyeyGreenstein
 from fogproof.scene.phase.isotropic import Isotropic
 from fogproof.scene.phase.mie import Mie
 from fogproof.scene.phase.mixture import Mixture
 from fogproof.scene.phase.murky import Murky
-from fogproof.scene.phase.phase_function import PhaseFunction, PhaseFunctionField, require_phase
+from fogproof.scene.phase.phase_function import PhaseFunction
+from fogproof.scene.phase.phase_function import PhaseFunctionField as PhaseFunctionField
+from fogproof.scene.phase.phase_function import require_phase as require_phase
 from fogproof.scene.phase.rayleigh import Rayleigh
 from fogproof.scene.phase.schlick import Schlick
 from fogproof.scene.phase.tabulated import Tabulated
@@ -31,6 +34,7 @@ KINDS: dict[str, type[PhaseFunction]] = {
     "rayleigh": Rayleigh,
     "cornette-shanks": CornetteShanks,
     "draine": Draine,
+    "fournier-forand": FournierForand,
     "mie": Mie,
     "tabulated": Tabulated,
     "mixture": Mixture,
@@ -54,12 +58,10 @@ def constant_phase(phase: AnyPhase) -> PhaseFunction | None:
 
 
 __all__ = [
-    "KINDS",
-    "AnyPhase",
-    "AnyPhaseField",
     "CornetteShanks",
     "DoubleHenyeyGreenstein",
     "Draine",
+    "FournierForand",
     "Hazy",
     "HenyeyGreenstein",
     "Isotropic",
@@ -67,13 +69,9 @@ __all__ = [
     "Mixture",
     "Murky",
     "PhaseFunction",
-    "PhaseFunctionField",
     "Ramp",
     "Rayleigh",
     "Schlick",
     "Tabulated",
     "VaryingPhase",
-    "constant_phase",
-    "require_any_phase",
-    "require_phase",
 ]

@@ -12,7 +12,7 @@ from fogproof.analytic.media.coefficients import is_uniform
 from fogproof.contracts import Estimator, Reference
 from fogproof.errors import InvalidValueError, UnsupportedError
 from fogproof.estimators import PathTracer
-from fogproof.estimators.paths.tracer import Gathering
+from fogproof.estimators.paths.tracer import LightSampling
 from fogproof.scene import Isotropic
 from fogproof.scene.lights import Environment
 from fogproof.scene.shapes import Ball
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     from fogproof.study.files import StudyScene
 
 _TITLES = {
-    "met": "Path tracing without next-event estimation",
-    "looked for": "Path tracing with next-event estimation",
-    "both": "Path tracing with MIS of both",
+    "bsdf": "Path tracing without next-event estimation",
+    "nee": "Path tracing with next-event estimation",
+    "mis": "Path tracing with MIS of both",
 }
 
 
@@ -47,9 +47,9 @@ def radiance_of_ball(scene: StudyScene) -> Reference:
 
 @dataclass(frozen=True)
 class PathTracing:
-    """Volumetric path tracing; `gathering` says whether light is looked for at every collision (next-event estimation)."""
+    """Volumetric path tracing; `light_sampling` says whether light is looked for at every collision (next-event estimation)."""
 
-    gathering: Gathering = "both"
+    light_sampling: LightSampling = "mis"
     quantity: ClassVar[str] = "radiance"
     axis: ClassVar[str] = "samples"
     expected: ClassVar[str] = "not rejected"
@@ -59,11 +59,11 @@ class PathTracing:
     @property
     def title(self) -> str:
         """How light is gathered."""
-        return _TITLES[self.gathering]
+        return _TITLES[self.light_sampling]
 
     def make(self, scene: StudyScene, count: int) -> Estimator:
         """Return the estimator."""
-        return PathTracer(scene.matter, scene.shape, scene.ray, scene.light, gathering=self.gathering)
+        return PathTracer(scene.matter, scene.shape, scene.ray, scene.light, light_sampling=self.light_sampling)
 
     def variance(self, scene: StudyScene) -> Reference | None:
         """Return None: nobody knows it."""

@@ -1,0 +1,101 @@
+"""Fournier & Forand 1994, as printed by Fournier & Jonasz 1999, sampled by inverting their distribution of angles.
+
+With nu = (3 - slope)/2 < 0, s = sin^2(angle/2) = (1 - mu)/2 and delta = 4 s/(3 (n-1)^2) the density is
+
+    [nu (1-delta) - (1-delta^nu) + (delta (1-delta^nu) - nu (1-delta))/s] / (4 pi (1-delta)^2 delta^nu)
+        + (1-delta_180^nu)/(16 pi (delta_180-1) delta_180^nu) (3 mu^2 - 1),
+
+and the share up to an angle [(1-delta^(nu+1)) - (1-delta^nu) s]/((1-delta) delta^nu) + (same factor)/8 x mu sin^2. Near
+delta = 1, where both are 0/0, powers of 1 - delta take over.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fogproof.estimators.phase.polar import Polar
+from fogproof.scene.phase import FournierForand
+
+SERIES, TERMS = 0.35, 36
+"""|1 - delta| up to which the series is summed, and its length: 0.35^36 < 1e-16."""
+
+SMALLEST = 1e-300
+MOST_STEPS = 100
+
+
+def _constants(phase: FournierForand) -> tuple[float, float, float]:
+    """Return nu, delta/s, and the factor of the last term of the distribution."""
+    nu, k = (3 - phase.junge_slope) / 2, 4 / (3 * (phase.refractive_index - 1) ** 2)
+    return nu, k, (k**-nu - 1) / (k - 1) if k != 1 else -nu
+
+
+def _binomials(nu: float) -> np.ndarray:
+    """Return the coefficients of (delta^-nu - 1)/(delta - 1) in powers of delta - 1."""
+    m = np.arange(1, TERMS)
+    return -nu * np.cumprod(np.concatenate([[1.0], (-nu - m) / (m + 1)]))
+
+
+def density(phase: FournierForand, versine: np.ndarray, coversine: np.ndarray) -> np.ndarray:
+    """Return the phase function [1/sr]; inf straight ahead."""
+    nu, k, last = _constants(phase)
+    s, rest = 0.5 * versine.astype(np.float64), 0.5 * coversine.astype(np.float64)
+    mu = rest - s
+    delta = k * np.maximum(s, SMALLEST)
+    one = np.where(np.abs(1 - delta) < SERIES, 2.0, delta)
+    with np.errstate(over="ignore"):
+        power = one**-nu
+        # Over delta^nu, and with 1/s - 1 = rest/s: no term is larger than what it adds to.
+        bracket = (one * (power - 1) - nu * (1 - one) * power) * (rest / np.maximum(s, SMALLEST)) + (1 - one) * (
+            1 - power
+        )
+        value = bracket / (1 - one) ** 2
+    u = delta - 1
+    series = np.abs(u) < SERIES
+    if series.any():
+        c = _binomials(nu)
+        inner, slope = np.polynomial.polynomial.polyval(u[series], c), np.polynomial.polynomial.polyval(
+            u[series], c[1:] * np.arange(1, TERMS)
+        )  # fmt: skip
+        value[series] = inner - k * rest[series] * slope
+    value += last * (3 * mu * mu - 1) / 4
+    return np.where(versine > 0, value / (4 * np.pi), np.inf).astype(versine.dtype)
+
+
+def _share(phase: FournierForand, s: np.ndarray) -> np.ndarray:
+    """Return the share of light that scatters less than the angle with sin^2(angle/2) = s."""
+    nu, k, last = _constants(phase)
+    delta = k * s
+    series = np.abs(1 - delta) < SERIES
+    one = np.where(series, 2.0, delta)
+    value = (one**-nu * (1 - s) - one + s) / (1 - one)
+    if series.any():
+        inner = np.polynomial.polynomial.polyval(delta[series] - 1, _binomials(nu))
+        value[series] = 1 - (1 - s[series]) * inner
+    return value + last / 2 * (1 - 2 * s) * s * (1 - s)
+
+
+def polar(phase: FournierForand, xi: np.ndarray) -> Polar:
+    """Return scattering angles and their pdf: Newton's method in log s, kept between bounds."""
+    nu, k, _ = _constants(phase)
+    target = 1 - xi.astype(np.float64)
+    with np.errstate(under="ignore", divide="ignore"):
+        start = np.clip(np.log(target) / -nu - np.log(k), np.log(SMALLEST), 0.0)
+    low, high = np.maximum(start - 40.0, np.log(SMALLEST)), np.zeros_like(start)
+    low = np.where(_share(phase, np.exp(low)) < target, low, np.log(SMALLEST))
+    t, left = start, np.arange(len(start))
+    for _ in range(MOST_STEPS):
+        at = t[left]
+        s = np.exp(at)
+        off = _share(phase, s) - target[left]
+        low[left], high[left] = np.where(off < 0, at, low[left]), np.where(off < 0, high[left], at)
+        slope = 4 * np.pi * s * density(phase, 2 * s, 2 * (1 - s))
+        step = at - off / slope
+        step = np.where((step > low[left]) & (step < high[left]), step, 0.5 * (low[left] + high[left]))
+        t[left] = step
+        left = left[np.abs(step - at) > 1e-15 * np.maximum(np.abs(at), 1.0)]
+        if len(left) == 0:
+            break
+    versine, coversine = 2 * np.exp(t), -2 * np.expm1(np.minimum(t, -SMALLEST))
+    versine = np.maximum(versine, np.finfo(xi.dtype).tiny)
+    at_angle = versine.astype(xi.dtype), coversine.astype(xi.dtype)
+    return Polar(*at_angle, density(phase, *at_angle))

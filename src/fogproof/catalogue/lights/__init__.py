@@ -1,0 +1,1 @@
+"""Lights with extent: single scattering, one module a kind."""

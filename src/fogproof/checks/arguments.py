@@ -1,0 +1,71 @@
+"""Arguments that several checks share, each read once: the clean value, or one sentence that says what to write."""
+
+from __future__ import annotations
+
+import math
+import operator
+from typing import Any
+
+from fogproof.checks.streams import fresh_seed
+from fogproof.errors import InvalidValueError
+from fogproof.validate import as_float_array, number
+
+SMALLEST_ALPHA = 1e-100
+"""False-alarm probabilities below this are no promise that arithmetic could keep."""
+
+
+def alpha_of(alpha: Any) -> float:
+    """Return a false-alarm probability."""
+    rule = f"must lie in (0, 1), and not below {SMALLEST_ALPHA:g}"
+    value = number("alpha", alpha, rule, 0, 1, open_ends=True, fix="1e-6 is usual")
+    if value < SMALLEST_ALPHA:
+        raise InvalidValueError("alpha", rule, value, "1e-6 is usual")
+    return value
+
+
+def samples_of(samples: Any, least: int = 2) -> int:
+    """Return a number of realisations; 1e6 is one."""
+    return whole("samples", samples, least)
+
+
+def whole(name: str, value: Any, least: int) -> int:
+    """Return a whole number, also if it is written as a float such as 1e6."""
+    rule = f"must be a whole number >= {least}"
+    x = number(name, value, rule, least)
+    if x != math.floor(x):
+        raise InvalidValueError(name, rule, x)
+    return int(x)
+
+
+def seed_of(seed: Any) -> int:
+    """Return a seed: the one given, or a fresh one."""
+    if seed is None:
+        return fresh_seed()
+    rule = "must be a whole number >= 0, or None for a fresh one"
+    try:
+        value = operator.index(seed)
+    except TypeError:
+        raise InvalidValueError("seed", rule, seed) from None
+    if value < 0:
+        raise InvalidValueError("seed", rule, seed)
+    return value
+
+
+def bounds_of(bounds: Any, nonnegative: bool = False) -> tuple[float, float]:
+    """Return (low, high) between which every value lies."""
+    if bounds is None:
+        return (0.0 if nonnegative else -math.inf), math.inf
+    array = as_float_array("bounds", bounds)
+    if array.shape != (2,) or not array[0] < array[1]:
+        raise InvalidValueError("bounds", "must be (low, high) with low < high", bounds)
+    low, high = map(float, array)
+    return max(low, 0.0) if nonnegative else low, high
+
+
+def tolerance_of(tolerance: Any) -> tuple[float, float]:
+    """Return the tolerance as (relative, absolute)."""
+    array = as_float_array("tolerance", tolerance)
+    if array.shape not in ((), (2,)) or not ((array >= 0) & (array < math.inf)).all():
+        raise InvalidValueError("tolerance", "must be one number >= 0, or (relative, absolute)", tolerance)
+    relative, absolute = (float(array), 0.0) if array.ndim == 0 else map(float, array)
+    return relative, absolute

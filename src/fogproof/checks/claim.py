@@ -1,0 +1,127 @@
+"""A claimed density, integrated over the chart of its domain, and whether the integral is known.
+
+An error estimate that compares two sets of nodes is no bound where the density jumps: a jump outside both gives 0 +- 0. So the
+density is integrated twice, over boxes that are differently placed, and looked at on evenly spread points and at the pilot. It is
+known where both integrals agree and no look finds a density that the polynomials do not have. Only then quadrature judges.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from fogproof.checks.density.charts import Chart
+from fogproof.checks.density.features import Ranges, ranges_of_line, ranges_of_plane
+from fogproof.checks.density.grid import Grid, blurred, grid_of
+from fogproof.checks.density.lattice import lattice
+from fogproof.checks.density.model import Density, Effort, integrated, second_view, unknown
+from fogproof.checks.density.quadrature import Leaves
+from fogproof.checks.normalisation import FLOOR, effort, rounding_share
+from fogproof.checks.subject import Subject, nudged
+from fogproof.domains import Law
+
+_LOOKS = {1: 1 << 17, 2: 400_000}  # evenly spread points on so many axes
+_HIGH = 40.0  # times the known law's density: lower ones hold no mass that one of the points could stand for
+_COARSE = 50.0  # times the error that is never rejected: an integral known no better is not known
+_MOST = 2048  # points of one kind that are compared with the polynomials
+_STRANGE = 0.01  # share of the pilot that may not be as the polynomials have it
+
+
+@dataclass(frozen=True)
+class Claim:
+    """The integrated density of a continuous domain.
+
+    doubt  why the integral is not known, "" if it is
+    found  whether looking closer has changed it
+    """
+
+    chart: Chart
+    density: Density
+    work: Effort
+    rounding: float
+    leaves: Leaves
+    grid: Grid
+    ranges: Ranges
+    doubt: str
+    found: bool = False
+
+
+def claimed(subject: Subject, chart: Chart, points: np.ndarray, samples: int) -> Claim:
+    """Integrate the subject's density over its chart; `points` are a pilot sample of the continuous part."""
+    work = effort(subject, points)
+
+    def density(c: np.ndarray) -> np.ndarray:
+        p = subject.density(chart.to_point(c))
+        return np.where(p == 0, 0.0, p * chart.jacobian(c))
+
+    pilot = chart.coordinates(points) if len(points) else np.empty((0, len(chart.axes)))
+    leaves = integrated(chart, density, pilot, work)
+    grid = grid_of(chart, leaves, samples)
+    grid = blurred(grid, chart, points[:2048], nudged(points[:2048], subject.roundoff), subject.roundoff)
+    rounding = rounding_share(subject, points) if subject.precision == "float32" and len(points) else 0.0
+    ranges = _ranges(chart, leaves, grid, density)
+    doubt = _doubt(subject, leaves, rounding, lambda: second_view(chart, density, pilot, work))
+    doubt = doubt or _strange(subject, chart, density, leaves, work, points)
+    return Claim(chart, density, work, rounding, leaves, grid, ranges, doubt)
+
+
+def _ranges(chart: Chart, leaves: Leaves, grid: Grid, density: Density) -> Ranges:
+    if grid.plane is not None:
+        return ranges_of_plane(chart, leaves, grid.marginals, grid.plane)
+    line: Callable[[np.ndarray], np.ndarray] = lambda t: density(np.ascontiguousarray(t)[:, None])  # noqa: E731
+    return ranges_of_line(chart.axes[0], grid.marginals[0], chart.jacobian, line)
+
+
+def _doubt(subject: Subject, leaves: Leaves, rounding: float, again: Callable[[], Leaves]) -> str:
+    """Return why two integrals of one density do not settle it, "" if they do."""
+    floor = FLOOR[subject.precision] + rounding
+    words = f"quadrature gives {leaves.total:.6g} +- {leaves.total_error:.1g}"
+    if not leaves.total_error <= _COARSE * floor:
+        return words
+    other = again()
+    if not abs(leaves.total - other.total) <= floor + leaves.total_error + other.total_error:
+        return f"{words} and, over other boxes, {other.total:.6g} +- {other.total_error:.1g}"
+    return ""
+
+
+def _strange(subject: Subject, chart: Chart, density: Density, leaves: Leaves, work: Effort, points: np.ndarray) -> str:
+    """Return where the density is not as its polynomials have it, "" if nowhere that matters."""
+    if len(points):
+        odd = np.count_nonzero(unknown(density, leaves, chart.coordinates(points[:_MOST]), work))
+        if odd > _STRANGE * len(points[:_MOST]):
+            return f"quadrature does not know the pdf at {odd} of {len(points[:_MOST])} sampled points"
+    x, base = _spread(subject, points)
+    p = subject.density(x)
+    for telling in (p > _HIGH * base, p == 0):
+        at = np.flatnonzero(telling)
+        at = at[:: max(len(at) // _MOST, 1)]
+        if len(at) and (odd := np.count_nonzero(unknown(density, leaves, chart.coordinates(x[at]), work))):
+            return f"quadrature does not know the pdf at {odd} of {len(x)} evenly spread points"
+    return ""
+
+
+def _spread(subject: Subject, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return evenly spread points of the domain (n, ...) and the known law's density there, those of bounded domains kept."""
+    domain = subject.domain
+    hashable: Any = domain
+    return _spread_on(hashable) if np.isfinite(domain.measure) else _spread_by(domain.law(points))
+
+
+@lru_cache(maxsize=4)
+def _spread_on(domain: Any) -> tuple[np.ndarray, np.ndarray]:
+    return _spread_by(domain.law(np.empty((0, *domain.shape))))
+
+
+def _spread_by(law: Law) -> tuple[np.ndarray, np.ndarray]:
+    k = len(law.axes)
+    x = law.place(lattice(_LOOKS[k], k, np.full(k, 0.5)))
+    return x, law.density(x)
+
+
+def blind(axes: int) -> float:
+    """Return the share of the domain below which something compact may lie between all points that were looked at."""
+    return 4.0 / _LOOKS[axes]

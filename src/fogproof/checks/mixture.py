@@ -1,0 +1,191 @@
+"""Samples mixed with points of a known law by coin tosses: what the label test counts.
+
+The known law is a mixture itself: mostly the histogram of a pilot sample, which makes the coins about fair wherever the claim is
+right, and a share of the domain's own law, which is nowhere zero. Evenly spread points of the domain look for what the claim has
+where the pilot has not been; if there is any, the histogram follows it too.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fogproof.checks.density.lattice import lattice
+from fogproof.checks.density.tree import Tree
+from fogproof.checks.statistics.labels import Sums
+from fogproof.checks.streams import batch_generator
+from fogproof.checks.subject import Subject, in_domain, nudged
+from fogproof.contracts import Draw
+from fogproof.domains import Law
+
+_PER_LEAF = 12  # pilot points in a leaf of the histogram
+_ANYWHERE = 0.1  # share of the domain's own law
+_LOOK = 1 << 18  # evenly spread points
+_CHECKED = 1 << 15  # pilot points at which the effect of rounding is looked at
+_UNSEEN = 0.9  # probability of being a sample, above which the pilot should have been there
+_NEGLIGIBLE = 1e-3  # mass that need not be followed
+_ROUNDS = 3  # of following
+_LEAST_PILOT = 1 << 14  # points that a histogram is made of, at least
+_FOLLOWED = 0.25  # share of the points that follow what the pilot has not seen
+_MOVED = 1e-2  # relative change of the pdf by rounding, from which on its value says nothing
+_SIX = 6.0  # standard deviations
+
+
+@dataclass(frozen=True)
+class Mixture:
+    """The known law of one subject.
+
+    tree     in the coordinates of the domain's law
+    seed     of the check
+    most     batches that are mixed: the first so many
+    rounded  whether the pdf changes much by rounding somewhere: such points are left out
+    """
+
+    subject: Subject
+    law: Law
+    tree: Tree
+    seed: int
+    most: int
+    rounded: bool
+
+    @staticmethod
+    def of(subject: Subject, law: Law, points: np.ndarray, seed: int, most: int) -> Mixture:
+        """Return the mixture that follows pilot points (n, ...) of the domain."""
+        rng = batch_generator(seed, "labels", 0, 0)
+        u = law.coordinates(points, rng.random((len(points), len(law.axes))))
+        rounded = len(points) > 0 and bool(_moved(subject, points[:_CHECKED]).any())
+        return Mixture(subject, law, Tree.of(u, _PER_LEAF), seed, most, rounded)
+
+    def wider(self, points: np.ndarray) -> Mixture:
+        """Return the mixture that also follows the pdf where it is high and no pilot point was: evenly spread points find it."""
+        rng = batch_generator(self.seed, "labels", 0, 1)
+        k = len(self.law.axes)
+        u = lattice(_LOOK, k, rng.random(k))
+        x = self.law.place(u)
+        unseen = self._unseen(rng, u, x, self.law.density(x))
+        if len(unseen) == 0:
+            return self
+        own = self.law.coordinates(points, rng.random((len(points), k)))
+        n = max(len(own), _LEAST_PILOT)
+        found, wider, side = np.empty((0, k)), self, _LOOK ** (-1 / k)
+        for _ in range(_ROUNDS):  # each finds more of the place whose edge the last one found
+            follow = unseen[rng.integers(0, len(unseen), int(_FOLLOWED * n))]
+            follow = np.clip(follow + side * (rng.random(follow.shape) - 0.5), 0, 1)
+            found = np.concatenate([found, follow])
+            wider = replace(self, tree=Tree.of(rng.permutation(np.concatenate([own, found])), _PER_LEAF))
+            x, u = wider._drawn(rng, n)
+            unseen = wider._unseen(rng, u, x, wider._q(x, u, wider.tree.leaf(u)))
+            if len(unseen) == 0:
+                break
+        return wider
+
+    def _unseen(self, rng: np.random.Generator, u: np.ndarray, x: np.ndarray, law: np.ndarray) -> np.ndarray:
+        """Return those of the coordinates u (n, k) where the pdf is high beyond the histogram, repeated by the mass they stand for.
+
+        x, law  the points there, and the density (n,) that they were drawn with
+        """
+        p = self.density(x)
+        with np.errstate(all="ignore"):
+            high = np.isfinite(p) & (p > _UNSEEN / (1 - _UNSEEN) * self._q(x, u, self.tree.leaf(u)))
+            mass = np.where(high, p / law, 0.0)
+        total = mass.sum()
+        if not total > _NEGLIGIBLE * len(u):
+            return np.empty((0, u.shape[1]))
+        return u[rng.choice(len(u), 1 << 12, p=mass / total)]
+
+    def density(self, x: np.ndarray) -> np.ndarray:
+        """Return (n,) the claimed density at points that may lie outside the domain, where it is 0."""
+        inside = in_domain(self.subject.domain, x, self.subject.roundoff)
+        if inside.all():
+            return self.subject.density(x)
+        p = np.zeros(len(x))
+        p[inside] = self.subject.density(x[inside])
+        return p
+
+    def nothing(self) -> Sums:
+        """Return the sums over no points."""
+        none = np.empty(0)
+        return Sums.of(none, none, none.astype(np.intp), len(self.tree.share), np.zeros(3))
+
+    def count(self, draw: Draw, good: np.ndarray, p: np.ndarray, index: int) -> tuple[Sums, Sums]:
+        """Return the sums over batch number `index`: with all samples as labels, and with those alone that were not given up.
+
+        good  (n,) which samples are good points of the continuous part
+        p     the claimed density there
+        """
+        rng = batch_generator(self.seed, "labels", 1, index)
+        tried = np.ones(len(good), dtype=bool) if draw.valid is None else draw.valid
+        every = self._sums(draw.x, good, p, rng, np.arange(len(good)))
+        return every, (every if tried.all() else self._sums(draw.x, good, p, rng, np.flatnonzero(tried)))
+
+    def _sums(
+        self, x: np.ndarray, good: np.ndarray, p: np.ndarray, rng: np.random.Generator, tried: np.ndarray
+    ) -> Sums:
+        n = len(tried)
+        tosses = max(int(2 * n - _SIX * np.sqrt(2 * n)), 0)
+        samples = min(int(rng.binomial(tosses, 0.5)), n)
+        used = tried[:samples]
+        used = used[good[used]]
+        at = np.cumsum(good) - 1
+        known, u = self._drawn(rng, tosses - samples)
+        points = np.concatenate([x[used], known])
+        claimed = np.concatenate([p[at[used]], self.density(known)])
+        v = rng.random((len(points), len(self.law.axes))) if self.law.stepped else points
+        coordinates = self.law.coordinates(points, v)
+        if self.law.stepped:
+            coordinates[len(used) :] = u
+        leaf = self.tree.leaf(coordinates)
+        q = self._q(points, coordinates, leaf)
+        labels = np.zeros(len(points))
+        labels[: len(used)] = 1.0
+        with np.errstate(all="ignore"):
+            ratio = claimed / q
+            w = ratio / (1 + ratio)
+        telling = np.isfinite(ratio) & (ratio > 0)
+        if self.rounded:
+            telling &= ~_moved(self.subject, points)
+        theirs = ratio[len(used) :]
+        theirs = np.where(telling[len(used) :], theirs, 0.0)
+        ratios = np.array([tosses - samples, theirs.sum(), np.square(theirs).sum()])
+        if not telling.all():
+            labels, w, leaf = labels[telling], w[telling], leaf[telling]
+        return Sums.of(labels, w, leaf, len(self.tree.share), ratios)
+
+    def known(self, rng: np.random.Generator, n: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return n points of the known law and its density (n,) there."""
+        x, u = self._drawn(rng, n)
+        return x, self._q(x, u, self.tree.leaf(u))
+
+    def _q(self, x: np.ndarray, u: np.ndarray, leaf: np.ndarray) -> np.ndarray:
+        return self.law.density(x) * (_ANYWHERE + (1 - _ANYWHERE) * self.tree.density(u, leaf))
+
+    def _drawn(self, rng: np.random.Generator, n: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return n points of the known law, in no special order, and their coordinates."""
+        anywhere = int(rng.binomial(n, _ANYWHERE)) if self.tree.share.any() else n
+        u = np.concatenate([rng.random((anywhere, len(self.law.axes))), self.tree.draw(rng, n - anywhere)])
+        x = self.law.place(u)
+        if self.subject.precision == "float32":
+            x = x.astype(np.float32).astype(np.float64)
+        return x, u
+
+    def describe(self, depth: int, number: int) -> str:
+        """Return in words where a node of the tree lies: the shares of the known law along each axis."""
+        step = len(self.tree.share) >> depth
+        leaves = slice(number * step, (number + 1) * step)
+        low, high = self.tree.low[leaves].min(axis=0), self.tree.high[leaves].max(axis=0)
+        corners = self.law.place(np.stack([low, np.minimum(high, 1 - 2.0**-53)]))
+        if corners.ndim == 1:
+            return f"{corners[0]:.6g} to {corners[1]:.6g}"
+        middle = self.law.place(0.5 * (low + high)[None])[0]
+        return f"about ({', '.join(f'{c:.6g}' for c in middle)})"
+
+
+def _moved(subject: Subject, points: np.ndarray) -> np.ndarray:
+    """Return (n,) where the pdf changes so much by rounding of the point that its value there says nothing."""
+    p = subject.density(points)
+    moved = np.zeros(len(points), dtype=bool)
+    for near in nudged(points, subject.roundoff):
+        with np.errstate(all="ignore"):
+            moved |= ~(np.abs(subject.density(near) - p) <= _MOVED * p) & (p > 0)
+    return moved

@@ -1,0 +1,59 @@
+"""Integrals that no quadrature settles, estimated on points of a known law: the mean cosine, and the albedo."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from fogproof.checks.mixture import Mixture
+from fogproof.checks.statistics.goodness import MISS
+from fogproof.checks.statistics.tails import normal_quantile
+from fogproof.checks.streams import batch_generator
+from fogproof.checks.subject import call
+from fogproof.checks.verdict import Finding, Outcome, Resolution
+
+_POINTS = 1 << 18
+_BEYOND_DOUBT = 8.0  # standard errors: a false alarm has probability 1e-15
+
+
+def mean_cosine(mixture: Mixture) -> Finding:
+    """The mean of x . axis under the pdf must be the declared one."""
+    subject = mixture.subject
+    assert subject.mean_cosine is not None
+    axis = np.asarray(subject.axis)
+    finding = _estimated("mean cosine", mixture, lambda x: mixture.density(x) * (x @ axis), subject.mean_cosine)
+    return finding.because("sign convention") if finding.outcome == "rejected" else finding
+
+
+def albedo(mixture: Mixture) -> list[Finding]:
+    """The integral of `eval` over the domain must be the declared albedo, channel by channel."""
+    subject = mixture.subject
+    claims = np.atleast_1d(np.asarray(subject.albedo, dtype=float))
+    findings = []
+    for channel, claim in enumerate(claims.tolist()):
+
+        def f(x: np.ndarray, channel: int = channel) -> np.ndarray:
+            assert subject.eval is not None
+            inside = subject.domain.contains(x, 16 * subject.roundoff)
+            values = np.asarray(call("eval(x)", subject.eval, x), dtype=np.float64)
+            return np.where(inside, values if values.ndim == 1 else values[:, channel], 0.0)
+
+        name = "albedo" if len(claims) == 1 else f"albedo of channel {channel}"
+        finding = _estimated(name, mixture, f, claim)
+        findings.append(finding.because("wrong weight") if finding.outcome == "rejected" else finding)
+    return findings
+
+
+def _estimated(name: str, mixture: Mixture, f: Callable[[np.ndarray], np.ndarray], claim: float) -> Finding:
+    x, q = mixture.known(batch_generator(mixture.seed, name, 0, 0), _POINTS)
+    with np.errstate(all="ignore"):
+        values = f(x) / q
+    mean, error = float(np.mean(values)), float(np.std(values)) / math.sqrt(len(values))
+    message = f"{name} of the pdf is {mean:.6g} +- {error:.1g} by points of a known law, declared {claim:.9g}"
+    if not math.isfinite(error):
+        return Finding(name, "inconclusive", f"{message}: it is not finite at some of them")
+    resolution = Resolution(f"error of the {name}", (_BEYOND_DOUBT + normal_quantile(MISS)) * error, MISS)
+    outcome: Outcome = "rejected" if abs(mean - claim) > _BEYOND_DOUBT * error + 1e-12 else "not rejected"
+    return Finding(name, outcome, message, effect=mean - claim, resolution=resolution)

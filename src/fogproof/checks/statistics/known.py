@@ -1,0 +1,50 @@
+"""What is declared of the law of one realisation: tests may rely on it whatever has been seen, and on nothing else."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Known:
+    """Declared facts about one realisation.
+
+    variance   an upper bound on its variance, or None
+    low, high  no realisation lies outside
+    light      its tails are no heavier than those of the exponential law: Student's test may be used with few realisations
+    assumed    bounds are not declared: no negative value was seen, and one that mattered would have to be absurdly large
+    """
+
+    variance: float | None = None
+    low: float = -math.inf
+    high: float = math.inf
+    light: bool = False
+    assumed: bool = False
+
+    @property
+    def deviation(self) -> float | None:
+        """Bound on the standard deviation, or None."""
+        return None if self.variance is None else math.sqrt(self.variance)
+
+    @property
+    def bounded(self) -> bool:
+        """Whether both ends are finite."""
+        return math.isfinite(self.high - self.low)
+
+    @property
+    def two_sided(self) -> bool:
+        """Whether means that are too small as well as too large can be shown, whatever the law."""
+        return self.bounded or self.variance is not None
+
+    def words(self) -> str:
+        """Return what is relied on, for a message."""
+        facts = [] if self.variance is None else [f"the declared variance {self.variance:.3g}"]
+        if self.assumed:
+            facts.append("that no value is negative, as none so far was")
+        elif math.isfinite(self.low) or math.isfinite(self.high):
+            facts.append(f"the declared bounds ({self.low:g}, {self.high:g})")
+        return " and ".join(facts)
+
+
+NOTHING = Known()

@@ -1,0 +1,201 @@
+"""The label test: given the point, the label is a coin whose bias is known.
+
+Samples of an unknown law and points of a known one are mixed by coin tosses. If the samples have the density p, a point at z is a
+sample with probability w = p / (p + r q), exactly, whatever p is and in any dimension: the residual "label - w" has mean 0 and
+variance w (1 - w), without one integral. Its sum over everything tests normalisation, sums over the cells of a tree test the shape,
+sums over levels of w test whether the places that p makes likely are.
+
+A classifier two-sample test turned round (Lopez-Paz & Oquab 2017): the classifier is the claim itself.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from fogproof.checks.statistics.goodness import MISS, pooled
+from fogproof.checks.statistics.tails import gamma_above, normal_quantile
+from fogproof.checks.verdict import Finding, Outcome, Resolution
+
+_EDGES = np.array([-4.0, -2.0, *np.arange(-1.0, 1.01, 0.25), 2.0, 4.0])  # of the levels, in log(w / (1 - w))
+LEVELS = len(_EDGES) + 1
+_LEAST = 10.0  # variance of the sum of a cell whose square may enter a chi-square
+_NORMAL = 50.0  # variance from which on a sum's tail is the normal one, corrected for skewness
+_SKEW = 0.5  # largest exponent of that correction
+_TELLING = 100.0  # variance of all residuals: with less, nothing is said
+
+
+@dataclass(frozen=True)
+class Sums:
+    """Sums over points: of residuals, of their variances, of their third moments, of their squared variances; (4, m) each.
+
+    cells   one column a leaf of the tree
+    levels  one column a level of w
+    ratios  (3,) over the points of the known law alone: 1, p / q, (p / q)^2
+    """
+
+    cells: np.ndarray
+    levels: np.ndarray
+    ratios: np.ndarray
+
+    @staticmethod
+    def of(labels: np.ndarray, w: np.ndarray, cell: np.ndarray, cells: int, ratios: np.ndarray) -> Sums:
+        """Return the sums over points with labels (n,) of 0 or 1, probabilities w (n,), in the given cells (n,)."""
+        variance = w * (1 - w)
+        columns = (labels - w, variance, variance * (1 - 2 * w), variance * variance)
+        with np.errstate(divide="ignore"):
+            level = np.searchsorted(_EDGES, np.log(w) - np.log1p(-w))
+        return Sums(
+            np.stack([np.bincount(cell, column, cells) for column in columns]),
+            np.stack([np.bincount(level, column, LEVELS) for column in columns]),
+            ratios,
+        )
+
+    @property
+    def columns(self) -> tuple[np.ndarray, ...]:
+        """All sums."""
+        return self.cells, self.levels, self.ratios
+
+    def merged(self, other: Sums) -> Sums:
+        """Return the sums over both."""
+        return Sums(self.cells + other.cells, self.levels + other.levels, self.ratios + other.ratios)
+
+
+def tail(total: np.ndarray, variance: np.ndarray, third: np.ndarray) -> np.ndarray:
+    """Return (m,) two-sided p-values of sums of independent residuals in [-1, 1].
+
+    With a large variance the normal law's, times exp(skewness z^3 / 6), the leading term of Cramer's expansion far in the tail;
+    otherwise Bennett's bound (1962), which holds for every number of them.
+    """
+    from scipy.special import ndtr
+
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        z = np.abs(total) / np.sqrt(variance)
+        skew = np.abs(third) * z**3 / (6 * variance**1.5)
+        normal = 2 * ndtr(-z) * np.exp(np.minimum(skew, 1.0))
+        ratio = np.abs(total) / variance
+        bennett = 2 * np.exp(-variance * ((1 + ratio) * np.log1p(ratio) - ratio))
+    p = np.where((variance >= _NORMAL) & (skew <= _SKEW), normal, bennett)
+    return np.where(variance > 0, np.minimum(p, 1.0), 1.0)
+
+
+def whole(name: str, sums: tuple[Sums, ...], alpha: float) -> Finding:
+    """The sum of all residuals: the integral of the pdf, and lost samples. `sums`, one for each convention: one must hold."""
+    p, total, variance = max(_total(each) for each in sums)
+    if variance < _TELLING:
+        message = f"samples and points of a known law share too few places: {variance:.3g} coins in doubt"
+        return Finding(name, "inconclusive", message, p, alpha)
+    spread = 1 / math.sqrt(variance)
+    step = (normal_quantile(alpha / 2) + normal_quantile(MISS)) * spread
+    resolution = Resolution("factor on the pdf, off 1 by more than that,", step * (1 + step), MISS)
+    rejected = p <= alpha
+    off = total * spread
+    message = f"labels less their probabilities sum to {off:+.2f} standard deviations; {_integral(sums)}"
+    return Finding(
+        name,
+        "rejected" if rejected else "not rejected",
+        message,
+        p,
+        alpha,
+        variance >= _NORMAL and len(sums) == 1,
+        total,
+        -total / variance,
+        resolution,
+        cause="normalisation" if rejected else "",
+    )
+
+
+def _total(sums: Sums) -> tuple[float, float, float]:
+    total, variance, third, _ = sums.cells.sum(axis=1)
+    return float(tail(total, variance, third)), float(total), float(variance)
+
+
+def _integral(sums: tuple[Sums, ...]) -> str:
+    n, first, second = sums[0].ratios.tolist()
+    mean = first / max(n, 1)
+    error = math.sqrt(max(second / max(n, 1) - mean * mean, 0.0) / max(n, 1))
+    return f"by points of the known law the pdf integrates to {mean:.5g} +- {error:.1g}"
+
+
+def cells_at(name: str, depth: int, sums: tuple[Sums, ...], alpha: float) -> Finding:
+    """Chi-square of the residuals in the 2^depth cells of one depth of the tree."""
+    return _convention([_chi_square(name, _folded(each.cells, depth), alpha) for each in sums])
+
+
+def levels(name: str, sums: tuple[Sums, ...], alpha: float) -> Finding:
+    """Chi-square of the residuals in levels of w: are places as frequent as the pdf is high there?"""
+    return _convention([_chi_square(name, each.levels, alpha) for each in sums])
+
+
+def _convention(findings: list[Finding]) -> Finding:
+    """Return the finding under the convention that fits best: the claim is right if one of them is."""
+    return max(findings, key=lambda f: 1.0 if f.p_value is None else f.p_value)
+
+
+def _folded(cells: np.ndarray, depth: int) -> np.ndarray:
+    """Return (4, 2^depth) the sums of leaves under each node of one depth."""
+    return np.asarray(cells.reshape(len(cells), 1 << depth, -1).sum(axis=2))
+
+
+def _chi_square(name: str, columns: np.ndarray, alpha: float) -> Finding:
+    """Return the test of sums (4, m), small ones pooled.
+
+    The square of a sum over its variance has mean 1 exactly; its second and third cumulants follow from those of the sum, and the
+    p-value is that of the gamma law with the three (Pearson's type III).
+    """
+    groups = pooled(columns[1], _LEAST)
+    if columns[1].sum() < 2 * _LEAST:
+        return Finding(name, "inconclusive", "too few coins are in doubt", alpha=alpha)
+    total, variance, third, squares = (np.bincount(groups, column) for column in columns)
+    cells = len(total)
+    statistic = float(np.sum(total**2 / variance))
+    fourth = (variance - 6 * squares) / variance**2
+    skewness = third**2 / variance**3
+    second_cumulant = float(np.sum(2 + fourth))
+    third_cumulant = float(np.sum(8 + 12 * fourth + 10 * skewness))
+    shape, scale = 4 * second_cumulant**3 / third_cumulant**2, third_cumulant / (2 * second_cumulant)
+    p = gamma_above(shape, (statistic - cells) / scale + shape)
+    rejected = p <= alpha
+    misfit = math.sqrt(max(statistic - cells, 0.0) / float(variance.sum()))
+    message = f"chi-square = {statistic:.5g} on {cells} degrees of freedom"
+    outcome: Outcome = "rejected" if rejected else "not rejected"
+    return Finding(name, outcome, message, p, alpha, True, statistic, misfit, cause="shape" if rejected else "")
+
+
+def largest(name: str, describe: Callable[[int, int], str], sums: tuple[Sums, ...], alpha: float) -> Finding:
+    """The most conspicuous cell of all depths; `describe(depth, number)` says in words which it is."""
+    return _convention([_largest(name, describe, each, alpha) for each in sums])
+
+
+def _largest(name: str, describe: Callable[[int, int], str], sums: Sums, alpha: float) -> Finding:
+    depths = range(1, max(sums.cells.shape[1].bit_length(), 2))
+    best, at, residual, doubt = 1.0, (0, 0), 0.0, 0.0
+    for depth in depths:
+        if 1 << depth > sums.cells.shape[1]:
+            break
+        total, variance, third, _ = _folded(sums.cells, depth)
+        p = tail(total, variance, third)
+        i = int(np.argmin(p))
+        if p[i] * len(p) * len(depths) < best:
+            best, at = float(p[i]) * len(p) * len(depths), (depth, i)
+            residual, doubt = float(total[i]), float(variance[i])
+    rejected = best <= alpha
+    where = describe(*at)
+    message = f"the most conspicuous cell has {residual:+.4g} samples too {'many' if residual > 0 else 'few'}"
+    if not rejected:
+        message = f"no cell has too many or too few samples; {message}"
+    return Finding(
+        name,
+        "rejected" if rejected else "not rejected",
+        message,
+        best,
+        alpha,
+        False,
+        residual,
+        residual / max(doubt, 1.0),
+        region=(where,) if rejected else (),
+        cause="shape" if rejected else "",
+    )

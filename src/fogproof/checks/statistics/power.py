@@ -1,0 +1,46 @@
+"""How large a bias would a test of a mean have caught?"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from fogproof.checks.statistics.goodness import MISS, binomial_p
+from fogproof.checks.statistics.moments import Moments
+from fogproof.checks.statistics.tails import normal_quantile
+
+
+def student_reach(data: Moments, alpha: float, miss: float = MISS) -> float:
+    """Return the bias that Student's test, corrected for skewness, finds but for the probability `miss`."""
+    from scipy.special import stdtrit
+
+    freedom = max(data.n - 1, 1)
+    needed = -float(stdtrit(freedom, alpha / 2)) if freedom < 1e5 else normal_quantile(alpha / 2)
+    growth = abs(data.skewness) / (3 * math.sqrt(data.n))
+    for _ in range(20):  # exp(growth z^3) of the p-value has to be made up for
+        needed = normal_quantile(max(alpha / 2 * math.exp(-min(growth * needed**3, 50.0)), 1e-300))
+    return (needed + normal_quantile(miss)) * data.stderr * (1 + growth)
+
+
+def binomial_reach(n: int, low: float, high: float, alpha: float, miss: float = MISS) -> float:
+    """Return the smallest change of a probability in [low, high] that the exact binomial test finds but for `miss`, both ways.
+
+    Where not even a probability of zero would be found, it is the whole probability.
+    """
+    from scipy.special import betaincinv
+
+    many = _first(lambda count: binomial_p(count, n, low, high) <= alpha, math.ceil(n * high), n)
+    rise = 1 - high if many is None else float(betaincinv(many, n - many + 1, 1 - miss)) - high
+    few = _first(lambda misses: binomial_p(n - misses, n, low, high) <= alpha, math.ceil(n * (1 - low)), n)
+    fall = low if few is None else low - float(betaincinv(n - few + 1, few, miss))
+    return max(rise, fall, 0.0)
+
+
+def _first(holds: Callable[[int], bool], start: int, end: int) -> int | None:
+    """Return the first whole number in [start, end] from which on `holds` is true, None if there is none."""
+    if not holds(end):
+        return None
+    while start < end:
+        middle = (start + end) // 2
+        start, end = (start, middle) if holds(middle) else (middle + 1, end)
+    return start

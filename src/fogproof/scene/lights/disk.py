@@ -1,0 +1,33 @@
+"""The disk that shines."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from fogproof.validate import Channels, nonnegative_channels, one_direction, one_point, positive_length
+
+
+@dataclass(frozen=True)
+class DiskLight:
+    """A flat disk that shines from one side, the same in all directions. It is opaque: a ray ends at it.
+
+    center    (x, y, z) [m]
+    normal    unit vector on the side that shines
+    radius    [m], > 0
+    radiance  [W/(m^2 sr)], grey or one value a channel
+    """
+
+    center: tuple[float, float, float]
+    normal: tuple[float, float, float]
+    radius: float
+    radiance: Channels
+    strength_field: ClassVar[str] = "radiance"
+    distant: ClassVar[bool] = False
+    delta: ClassVar[bool] = False
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "center", one_point("center", self.center))
+        object.__setattr__(self, "normal", one_direction("normal", self.normal))
+        object.__setattr__(self, "radius", positive_length("radius", self.radius))
+        object.__setattr__(self, "radiance", nonnegative_channels("radiance", self.radiance, "W/(m^2 sr)"))
