@@ -38,8 +38,8 @@ calibrate: $(VENV)/.installed-test  ## how often the checks reject what is right
 repeat: $(VENV)/.installed-test  ## 20 runs of the catalogue with fresh seeds: no false alarm
 	$(BIN)/python tools/repeat_verify.py
 
-oracle-hard: $(VENV)/.installed-test  ## the oracle on 10^5 hard cases against many-digit arithmetic
-	$(BIN)/python tools/oracle_hard.py
+oracle-hard: $(VENV)/.installed-test  ## every function of the oracle on 10^5 hard cases; rewrites docs/oracle-accuracy.md
+	$(BIN)/python tools/oracle_hard.py --table docs/oracle-accuracy.md
 
 fuzz-oracle: $(VENV)/.installed-test  ## 20000 broken lines to the oracle as a process: each costs its own answer and no other
 	$(BIN)/python tools/fuzz_oracle.py
