@@ -45,10 +45,10 @@ def thickness(medium: ExponentialMedium, ray: Ray, channels: int | None) -> Thic
         reach = np.where(
             np.isfinite(s), s * np.where(x > 0, -np.expm1(-x) / np.where(x > 0, x, 1), 1.0), 1 / np.abs(k[0])
         )
-        base = np.where(np.multiply(medium.sigma_0, np.ones_like(s)) > 0, medium.sigma_0 * reach, 0.0)
-        value = np.where(base > 0, _times_exp(base, top), 0.0)
+        there = np.multiply(medium.sigma_0, np.ones_like(s)) > 0
+        value = np.where(there, _sigma(medium.sigma_0, top, reach), 0.0)
         relative = 5 * ELEMENTARY + 12 * EPS + e_error + np.maximum(finite, np.minimum(reach, 1e300)) * k_error
-        error = relative * value + 2 * TINY * (1 + reach * np.maximum(medium.sigma_0, 1))
+        error = relative * value + 4 * TINY * (1 + reach)
         error = np.where(np.isinf(value), 0.0, error)  # more than any float64, for sure
     empty = np.multiply(medium.sigma_0, np.ones_like(s)) == 0
     endless = np.isinf(s) & (k[0] >= 0) & ~empty
@@ -58,10 +58,12 @@ def thickness(medium: ExponentialMedium, ray: Ray, channels: int | None) -> Thic
     return Thickness(value, np.zeros_like(value), np.where(unsure, np.inf, error), METHOD, SOURCE)
 
 
-def _times_exp(base: np.ndarray, power: Pair) -> np.ndarray:
-    """Return base exp(power) as far as that is a float64, by the fourth root of exp(power), which is one for all that matter."""
+def _sigma(sigma_0: Any, power: Pair, reach: np.ndarray) -> np.ndarray:
+    """Return sigma_0 exp(power) reach where it is a float64, even if exp(power) is none: then by its fourth root."""
     root = np.exp(power[0] / 4) * (1 + power[1] / 4)
-    return base * root * root * root * root
+    extreme = sigma_0 * root * root * reach * root * root
+    plain = np.exp(power[0]) * (1 + power[1]) * sigma_0 * reach
+    return np.where(np.abs(power[0]) > 700, extreme, plain)
 
 
 def free_path(medium: ExponentialMedium, rays: Rays, tau: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
