@@ -134,7 +134,7 @@ def _values(albedo: Any, tau: Any, mu0: Any, phase: Any, index: Any, wanted: Qua
     beam = [] if mu0 is None else [checked_cosine("mu0", mu0)]
     arrays = np.broadcast_arrays(checked_albedo(albedo), checked_length("tau", tau), *beam)
     phase = checked_phase(phase)
-    index = number("refractive_index", index, "must be finite and >= 1", 1)
+    index = number("refractive_index", index, "must lie in [1, 100]", 1, 100)
     shape = arrays[0].shape
     c, b, *cosines = (x.ravel() for x in arrays)
     mu = cosines[0] if cosines else None

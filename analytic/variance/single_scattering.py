@@ -17,6 +17,9 @@ from fogproof.scene.lights import LightField
 from fogproof.scene.media import AnyMediumField
 from fogproof.validate import channel_count
 
+NOTHING = 2000.0
+"""Mean free paths that leave less than 1e-860, which no 1/r^4 and no intensity that is a float64 lifts to one."""
+
 
 @quantity(
     unit="(W/(m^2 sr))^2",
@@ -63,7 +66,15 @@ def single_scattering_second_moment(
         relative = np.expm1(4 * sigma * uncertainty - 4 * np.log1p(-turn) + 2 * bend / (1 - bend))
         relative = np.where((turn < 1) & (bend < 1), relative, np.inf)
         value = np.where(scale > 0, moment.value * scale * scale, 0.0)
-        error = (moment.error + moment.value * (relative + 6 * EPS)) * scale * scale + TINY
+        # All light comes at least as far as the camera is from the lamp. Beyond NOTHING mean free paths none is left, wherever
+        # in its last digit the lamp stands; nearer, a value of 0 with a lamp that may stand anywhere says nothing.
+        dark = sigma * (start - 4 * uncertainty) > NOTHING
+        inherited = np.where(
+            moment.value > 0,
+            moment.value * (relative + 6 * EPS),
+            np.where(np.isfinite(relative) | dark, 0.0, np.inf),
+        )
+        error = (moment.error + inherited) * scale * scale + TINY
         error = np.where((scale > 0) & np.isfinite(value), error, 0.0)
     return Reference(value.reshape(shape), error.reshape(shape), moment.method, moment.source)
 
