@@ -9,10 +9,11 @@ from fogproof.analytic.airlight.ray_and_light import place
 from fogproof.analytic.airlight.single_scattering import single_scattering
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.analytic.declaration import FOG, LAMP, RAY, quantity
+from fogproof.analytic.media.coefficients import is_uniform
 from fogproof.analytic.variance.airlight import Sampling, airlight_second_moment
 from fogproof.contracts import Reference
 from fogproof.errors import UnsupportedError
-from fogproof.scene import Medium, PointLight, Ray
+from fogproof.scene import PointLight, Ray
 from fogproof.scene.lights import LightField
 from fogproof.scene.media import AnyMediumField
 from fogproof.validate import channel_count
@@ -42,7 +43,7 @@ def single_scattering_second_moment(
     place of each coordinate, as for `single_scattering`.
     Source: Kulla & Fajardo 2012, Importance sampling techniques for path tracing in participating media (equiangular).
     """
-    if not isinstance(medium, Medium):
+    if not is_uniform(medium):
         raise UnsupportedError(f"single scattering needs a homogeneous Medium, got {type(medium).__name__}", "medium")
     if not isinstance(light, PointLight):
         raise UnsupportedError(f"single scattering needs a PointLight, got {type(light).__name__}", "light")

@@ -192,7 +192,7 @@ def record(
             "schema": SCHEMA,
             "kind": "verify",
             "fogproof": importlib.metadata.version("fogproof"),
-            "environment": _environment(),
+            "environment": environment(),
             "command": command,
             "seed": seed,
             "alpha": alpha,
@@ -224,7 +224,7 @@ def _case_record(result: Result, seed: int, alpha: float) -> dict[str, Any]:
         "expected": case.expected,
         "reason": result.reason,
         "source": case.source,
-        "reference": f"fogproof.analytic: {case.oracle}",
+        "reference": f"fogproof.analytic: {case.oracle}" if case.reference is not None else case.oracle,
         "twin": case.twin.error,
         "twin_result": result.twin,
         "plan": None if result.verdict is None else _plan(case),
@@ -243,7 +243,8 @@ def _plan(case: Case) -> dict[str, Any] | None:
         return None
 
 
-def _environment() -> dict[str, Any]:
+def environment() -> dict[str, Any]:
+    """Return the versions and the machine that a record names."""
     versions = {"python": platform.python_version(), "numpy": np.__version__}
     for package in ("scipy", "mitsuba"):
         try:

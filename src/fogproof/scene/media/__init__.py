@@ -3,8 +3,9 @@
 The homogeneous `Medium` is given by sigma_a and sigma_s, the others by sigma_t and the albedo sigma_s / sigma_t. A
 medium fills space; where a kind has bounds, there is vacuum outside. Positions are world coordinates [m].
 
-A kind has `channels`, `albedo`, `phase` and `emission`; `sources_vary` if the last may differ from place to place,
-`channel(c)` if one channel of it is more than that channel of each tuple, `lower` and `upper` if it ends.
+A kind has `channels`, `albedo`, `phase` and `emission`; `sources_vary` if albedo or emission may differ from place to place,
+`is_empty` if it can be vacuum everywhere, `channel(c)` if one channel of it is more than that channel of each tuple, `lower` and
+`upper` if it ends.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from fogproof.scene.kinds import ByKind
 from fogproof.scene.media.anisotropic import AnisotropicMedium
 from fogproof.scene.media.common import channel_of
 from fogproof.scene.media.exponential import ExponentialMedium
+from fogproof.scene.media.gaussian_puffs import GaussianPuffs
 from fogproof.scene.media.homogeneous import Medium
 from fogproof.scene.media.linear import LinearMedium
 from fogproof.scene.media.opengl_fog import OpenGLFog
@@ -33,6 +35,7 @@ KINDS: dict[str, type] = {
     "anisotropic": AnisotropicMedium,
     "opengl-fog": OpenGLFog,
     "voxel-grid": VoxelGrid,
+    "gaussian-puffs": GaussianPuffs,
 }
 """The `kind` of each medium in files and requests; without one a medium is homogeneous."""
 
@@ -72,6 +75,11 @@ AnyMediumField = Annotated[AnyMedium, ByKind("fogproof.scene.media", default="ho
 def sources_vary(medium: AnyMedium) -> bool:
     """Return whether albedo or emission may differ from place to place."""
     return bool(getattr(medium, "sources_vary", False))
+
+
+def is_empty(medium: AnyMedium) -> bool:
+    """Return whether the medium is known to be vacuum everywhere."""
+    return bool(getattr(medium, "is_empty", False))
 
 
 def medium_of_channel(medium: AnyMedium, c: int) -> AnyMedium:
