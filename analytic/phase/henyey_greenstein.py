@@ -66,11 +66,11 @@ def mean_cosine(phase: HenyeyGreenstein) -> tuple[float, float]:
 
 
 def legendre_moments(phase: HenyeyGreenstein, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return g^l; relative error eps, until it underflows."""
+    """Return g^l; relative error 2 eps, until it underflows."""
     with np.errstate(under="ignore"):
         value = phase.g ** np.arange(count + 1.0)
         lost = np.where(np.abs(value) < 1e-290, TINY, 0.0) if phase.g else 0.0
-        return value, EPS * np.abs(value) + lost
+        return value, 2 * EPS * np.abs(value) + lost
 
 
 def airlight(phase: HenyeyGreenstein) -> AirlightPhase:
