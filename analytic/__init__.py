@@ -37,7 +37,7 @@ from fogproof.analytic.multiple.slab import (
     slab_reflectance,
     slab_transmittance,
 )
-from fogproof.analytic.multiple.slab_brdf import slab_brdf
+from fogproof.analytic.multiple.slab_brdf import slab_brdf, slab_btdf
 from fogproof.analytic.multiple.slab_orders import slab_reflectance_orders, slab_transmittance_orders
 from fogproof.analytic.phase.functions import (
     phase_cdf,
@@ -119,6 +119,7 @@ __all__ = [
     "single_scattering_variance",
     "sky_colour",
     "slab_brdf",
+    "slab_btdf",
     "slab_diffuse_reflectance",
     "slab_diffuse_transmittance",
     "slab_emissivity",

@@ -22,8 +22,8 @@ METHOD = "trapezoidal rule on the whole line"
 SOURCE = "Chandrasekhar 1960, Radiative Transfer, section 39"
 
 STEP = 0.2
-_U = STEP * np.arange(-210, 211)
-_WEIGHT = STEP / (2 * np.pi) / np.cosh(_U)
+NODES = STEP * np.arange(-210, 211)
+WEIGHTS = STEP / (2 * np.pi) / np.cosh(NODES)
 BLOCK = 128
 """Values evaluated at a time, each with 421 nodes."""
 
@@ -64,7 +64,7 @@ def log_h(c: np.ndarray, absorbed: np.ndarray, mu: np.ndarray) -> np.ndarray:
 
 def _log_h(c: np.ndarray, absorbed: np.ndarray, mu: np.ndarray) -> np.ndarray:
     with np.errstate(under="ignore"):
-        return -np.sum(_WEIGHT * log_dispersion(c, absorbed, _U - np.log(mu)), axis=-1)
+        return -np.sum(WEIGHTS * log_dispersion(c, absorbed, NODES - np.log(mu)), axis=-1)
 
 
 def log_dispersion(c: np.ndarray, absorbed: np.ndarray, s: np.ndarray) -> np.ndarray:

@@ -38,7 +38,7 @@ class Medium(NamedTuple):
     """Scattering at directions mu (n,) of weights w: shares backward, forward (b, n, n) so that
 
     c p(mu_i, mu_j)/2 = backward or forward, p averaged over azimuth (or its Fourier mode); absorbed (b,) is 1 - c.
-    balanced says that all that is not absorbed is scattered: the mean over azimuth, not a higher mode.
+    balanced (b,) says that all that is not absorbed is scattered: the mean over azimuth, not a higher mode.
     """
 
     mu: np.ndarray
@@ -46,7 +46,7 @@ class Medium(NamedTuple):
     forward: np.ndarray
     backward: np.ndarray
     absorbed: np.ndarray
-    balanced: bool
+    balanced: np.ndarray
 
 
 def layer(medium: Medium, tau: np.ndarray) -> Layer:
@@ -104,9 +104,9 @@ def doubled(one: Layer, medium: Medium) -> Layer:
     root = np.sqrt(2 * medium.mu * medium.w)
     square = R @ R
     between = np.linalg.inv(identity - square)  # 1 + (light that comes back)
-    if medium.balanced:
+    if np.any(medium.balanced):
         kept = ray * root + _apply(T, root) + medium.absorbed[:, None] * glow  # (1 - R) root
-        between = _corrected(between, root, kept + _apply(R, kept))
+        between = _corrected(between, root, kept + _apply(R, kept), medium.balanced)
     returned = between @ (R * column + R @ T)
     passed = (between @ square) * column + between @ T
     within = _apply(between, glow + _apply(R, glow))
@@ -122,11 +122,11 @@ def _apply(matrix: np.ndarray, vector: np.ndarray) -> np.ndarray:
     return (matrix @ vector[..., None])[..., 0]
 
 
-def _corrected(inverse: np.ndarray, image: np.ndarray, vector: np.ndarray) -> np.ndarray:
+def _corrected(inverse: np.ndarray, image: np.ndarray, vector: np.ndarray, where: np.ndarray) -> np.ndarray:
     """Return a symmetric inverse, made to take `vector` to `image`: its error has one direction, which that tells."""
     rest = image - _apply(inverse, vector)
     along = np.sum(rest * vector, axis=-1)
-    clear = np.abs(along) > 0.1 * np.linalg.norm(rest, axis=-1) * np.linalg.norm(vector, axis=-1)
+    clear = where & (np.abs(along) > 0.1 * np.linalg.norm(rest, axis=-1) * np.linalg.norm(vector, axis=-1))
     scaled = rest / np.where(clear, along, np.inf)[:, None]
     return inverse + rest[..., None] * scaled[:, None, :]
 

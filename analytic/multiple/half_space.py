@@ -9,13 +9,25 @@ import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.analytic.declaration import quantity
-from fogproof.analytic.multiple.chandrasekhar_h import METHOD, RELATIVE_ERROR, angle, log_h, one_minus_theta_cot
+from fogproof.analytic.multiple.chandrasekhar_h import (
+    BLOCK,
+    METHOD,
+    NODES,
+    RELATIVE_ERROR,
+    WEIGHTS,
+    angle,
+    log_h,
+    one_minus_theta_cot,
+)
 from fogproof.analytic.multiple.orders import taylor_coefficients
 from fogproof.analytic.multiple.scattering_arguments import checked_albedo, checked_cosine, checked_count
 from fogproof.contracts import Reference
 from fogproof.scene.arrays import Count, FloatArray
 
 SOURCE = "Chandrasekhar 1960, Radiative Transfer, sections 33 and 39"
+
+FAINT = 1e-100
+"""Albedo below which everything is proportional to it."""
 
 _STEP = 0.2
 _S = _STEP * np.arange(-450, 251)
@@ -33,12 +45,12 @@ def half_space_reflectance(albedo: FloatArray, mu0: FloatArray) -> Reference:
     albedo  (...) c in [0, 1]
     mu0     (...) in (0, 1]; broadcast against the albedo
 
-    It is also the radiance in direction mu0 under a uniform sky of radiance 1. Error: below 16 eps.
+    It is also the radiance in direction mu0 under a uniform sky of radiance 1. Relative error: below 16 eps.
     Source: Chandrasekhar 1960, Radiative Transfer, section 33, eq. 81.
     """
     c, mu0 = np.broadcast_arrays(checked_albedo(albedo), checked_cosine("mu0", mu0))
     value = _plane_albedo(c, 1 - c, mu0)
-    return Reference(value, np.full(value.shape, RELATIVE_ERROR), METHOD, SOURCE)
+    return Reference(value, RELATIVE_ERROR * value + TINY, METHOD, SOURCE)
 
 
 @quantity(
@@ -65,8 +77,16 @@ def half_space_reflectance_orders(mu0: FloatArray, count: Count) -> Reference:
 
 
 def _plane_albedo(c: np.ndarray, absorbed: np.ndarray, mu0: np.ndarray) -> np.ndarray:
-    with np.errstate(divide="ignore"):
-        return -np.expm1(0.5 * np.log(absorbed) + log_h(c, absorbed, mu0))
+    """Return 1 - sqrt(1 - c) H(mu0); its logarithm is a weighted mean of ln((1 - c)/(1 - c theta cot theta)), all negative."""
+    c, absorbed, mu0 = np.broadcast_arrays(c, absorbed, mu0)
+    flat = [x.ravel()[:, None] for x in (c, absorbed, mu0)]
+    value = np.empty(c.size, c.dtype)
+    with np.errstate(all="ignore"):
+        for start in range(0, c.size, BLOCK):
+            cc, aa, mu = (x[start : start + BLOCK] for x in flat)
+            mean = np.sum(WEIGHTS * np.log1p(cc / aa * one_minus_theta_cot(angle(NODES - np.log(mu)))), axis=1)
+            value[start : start + BLOCK] = -np.expm1(-mean)
+    return np.where(absorbed == 0, 1.0, value.reshape(c.shape))
 
 
 @quantity(
@@ -81,18 +101,23 @@ def half_space_spherical_albedo(albedo: FloatArray) -> Reference:
     albedo  (...) c in [0, 1]
 
     It is 1 - 2 sqrt(1 - c) alpha_1 with alpha_1 = int_0^1 mu H dmu, whose value follows from how H tends to its limit at
-    mu = inf: alpha_1 = 2 sqrt(1 - c)/(pi c) int ln(1 + c (1 - theta cot theta)/(1 - c)) e^-s ds, tan(theta) = e^s.
-    Error: below 32 eps.
+    mu = inf. With tan(theta) = e^s, z = 1 - theta cot(theta) and x = c z/(1 - c) that is
+    4/pi int (z - (1 - c)/c ln(1 + x)) e^-s ds, where nothing cancels but x - ln(1 + x). Relative error: below 32 eps.
     Source: Chandrasekhar 1960, Radiative Transfer, sections 38 and 39.
     """
     c = checked_albedo(albedo)
-    flat, absorbed = np.maximum(c.ravel(), 1e-100)[:, None], 1 - c.ravel()[:, None]
+    flat, absorbed = np.maximum(c.ravel(), FAINT)[:, None], 1 - c.ravel()[:, None]
     with np.errstate(all="ignore"):
-        integrand = np.log1p(flat / absorbed * one_minus_theta_cot(angle(_S))) * np.exp(-_S)
-        integral = _STEP * np.sum(integrand, axis=-1)
-        value = 1 - 4 * absorbed[:, 0] / (np.pi * flat[:, 0]) * integral
-    value = np.where(absorbed[:, 0] == 0, 1.0, value).reshape(c.shape)
-    return Reference(value, np.full(c.shape, 32 * EPS), METHOD, SOURCE)
+        z = one_minus_theta_cot(angle(_S))
+        x = flat / absorbed * z
+        far = z - absorbed / flat * np.log1p(x)
+        small = np.where(x < 0.25, x, 0.0)
+        series = np.zeros_like(x)
+        for n in range(27, -1, -1):  # (x - ln(1 + x))/x^2 = 1/2 - x/3 + …
+            series = 1 / (n + 2) - small * series
+        value = 4 / np.pi * _STEP * np.sum(np.where(x < 0.25, z * x * series, far) * np.exp(-_S), axis=-1)
+    value = np.where(absorbed[:, 0] == 0, 1.0, value).reshape(c.shape) * (c / np.maximum(c, FAINT))
+    return Reference(value, 32 * EPS * value + TINY, METHOD, SOURCE)
 
 
 @quantity(

@@ -49,5 +49,26 @@ def medium(slabs: Scaled, mu: np.ndarray, w: np.ndarray, aside: np.ndarray) -> M
         half * (even + odd),
         half * (even - odd),
         slabs.absorbed,
-        True,
+        np.ones(len(slabs.tau), bool),
     )
+
+
+def associated_legendre(m: int, highest: int, mu: np.ndarray) -> np.ndarray:
+    """Return sqrt((l - m)!/(l + m)!) P_l^m for l = 0 … highest (highest + 1, v), without Condon and Shortley's sign; 0 for l < m.
+
+    Source: Abramowitz & Stegun 1964, 8.5.3.
+    """
+    P = np.zeros((highest + 1, len(mu)))
+    if m > highest:
+        return P
+    sine = np.sqrt((1 - mu) * (1 + mu))
+    P[m] = 1.0
+    for j in range(1, m + 1):
+        P[m] *= sine * np.sqrt((2 * j - 1) / (2 * j))
+    if m < highest:
+        P[m + 1] = np.sqrt(2 * m + 1) * mu * P[m]
+    for n in range(m + 1, highest):
+        P[n + 1] = ((2 * n + 1) * mu * P[n] - np.sqrt((n - m) * (n + m)) * P[n - 1]) / np.sqrt(
+            (n + 1 - m) * (n + 1 + m)
+        )
+    return P

@@ -13,7 +13,7 @@ import numpy as np
 
 from fogproof.analytic.declaration import quantity
 from fogproof.analytic.multiple.scattering_arguments import checked_albedo, checked_cosine, checked_length
-from fogproof.analytic.multiple.slab_by_doubling import doubled_values
+from fogproof.analytic.multiple.slab_by_doubling import doubled_values, is_isotropic
 from fogproof.analytic.multiple.slab_by_modes import SOURCE, Quantity, isotropic_values
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError, UnsupportedError
@@ -138,7 +138,7 @@ def _values(albedo: Any, tau: Any, mu0: Any, phase: Any, index: Any, wanted: Qua
     shape = arrays[0].shape
     c, b, *cosines = (x.ravel() for x in arrays)
     mu = cosines[0] if cosines else None
-    if isinstance(phase, Isotropic):
+    if is_isotropic(phase):
         value, error = isotropic_values(c, b, mu, index, wanted)
     elif index > 1:
         raise UnsupportedError(

@@ -1,4 +1,4 @@
-"""Where a slab sends what it reflects: the X and Y functions of isotropic scattering.
+"""Where a slab sends what it reflects and transmits; for isotropic scattering by the X and Y functions.
 
 Lit by a uniform sky on one side only, a slab absorbs E(mu) = 1 - R - T of what comes from mu, and F = 1 - R + T. Both are X and
 Y in disguise: X - Y = E(mu)/E(0) and X + Y = F(mu)/F(0), and at grazing angles the radiance that leaves is the source at
@@ -9,15 +9,23 @@ Source: Chandrasekhar 1960, Radiative Transfer, chapter 8 and section 62.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.analytic.declaration import quantity
 from fogproof.analytic.multiple.isotropic_modes import isotropic_modes
 from fogproof.analytic.multiple.scattering_arguments import checked_albedo, checked_cosine, checked_length
+from fogproof.analytic.multiple.slab import checked_phase
+from fogproof.analytic.multiple.slab_by_doubling import is_isotropic
+from fogproof.analytic.multiple.slab_directions import Beams, Side, directional
 from fogproof.analytic.multiple.slab_modes import Modes, amplitudes, quadrature, scattered
 from fogproof.contracts import Reference
+from fogproof.errors import InvalidValueError
 from fogproof.scene.arrays import FloatArray
+from fogproof.scene.phase import PhaseFunctionField
+from fogproof.validate import as_float_array, require
 
 METHOD = "discrete ordinates"
 SOURCE = "Chandrasekhar 1960, Radiative Transfer, chapter 8"
@@ -27,39 +35,91 @@ FINE, COARSE = 20, 16
 
 RELATIVE_ROUNDING = 1e-13
 
+VIEWS = 24
+"""Pairs of directions evaluated at a time where the phase function is not isotropic."""
+
 MANY = 0.5
 """Albedo from which on the mode of the smallest k is taken out of E."""
 
 
 @quantity(
     unit="1/sr",
-    convention="radiance per irradiance of the surface, isotropic scattering; cosines to the normal; it does not depend on azimuth",
-    source="Chandrasekhar 1960, Radiative Transfer, section 62",
+    convention="radiance per irradiance of the surface; cosines to the normal; azimuth between the ways on, 0 straight ahead",
+    source="Chandrasekhar 1960, Radiative Transfer, section 62; de Haan, Bosma & Hovenier 1987",
     example={"albedo": 0.9, "tau": 1, "mu0": 0.5, "mu": [0.2, 0.5, 1]},
 )
-def slab_brdf(albedo: FloatArray, tau: FloatArray, mu0: FloatArray, mu: FloatArray) -> Reference:
-    """Return the reflectance distribution of a slab that scatters isotropically [1/sr]: radiance per irradiance.
+def slab_brdf(
+    albedo: FloatArray,
+    tau: FloatArray,
+    mu0: FloatArray,
+    mu: FloatArray,
+    phase: PhaseFunctionField | None = None,
+    azimuth: FloatArray | None = None,
+) -> Reference:
+    """Return the reflectance distribution of a slab [1/sr]: radiance at any angle per irradiance, all orders of scattering.
 
     albedo   (...) in [0, 1]
     tau      (...) optical thickness >= 0
-    mu0, mu  (...) cosines of the beam and of the view to the normal, in (0, 1]; all four broadcast
+    mu0, mu  (...) cosines of the beam and of the view to the normal, in (0, 1]
+    phase    phase function, isotropic unless given
+    azimuth  (...) between the horizontal directions of travel before and after [rad]; 0 goes on ahead. It may be left out for
+             isotropic scattering only; all five broadcast
 
-    It is c (X(mu0) X(mu) - Y(mu0) Y(mu))/(4 pi (mu0 + mu)). The error is estimated from a coarser solution: about
-    1e-13 + 4 eps tau, relative.
-    Source: Chandrasekhar 1960, Radiative Transfer, section 62.
+    For isotropic scattering it is c (X(mu0) X(mu) - Y(mu0) Y(mu))/(4 pi (mu0 + mu)), with an error of about 1e-13 + 4 eps tau,
+    relative. For other phase functions light scattered once comes from the phase function itself, the rest by doubling.
+    Errors are estimated from coarser solutions.
+    Source: Chandrasekhar 1960, Radiative Transfer, section 62; de Haan, Bosma & Hovenier 1987; Nakajima & Tanaka 1988.
     """
+    return _kernel(albedo, tau, mu0, mu, phase, azimuth, "reflected")
+
+
+@quantity(
+    unit="1/sr",
+    convention="scattered radiance below per irradiance above; cosines to the normal; azimuth 0 straight ahead; without the beam",
+    source="de Haan, Bosma & Hovenier 1987",
+    example={"albedo": 0.9, "tau": 1, "mu0": 0.5, "mu": [0.2, 0.5, 1]},
+)
+def slab_btdf(
+    albedo: FloatArray,
+    tau: FloatArray,
+    mu0: FloatArray,
+    mu: FloatArray,
+    phase: PhaseFunctionField | None = None,
+    azimuth: FloatArray | None = None,
+) -> Reference:
+    """Return the distribution of what a slab transmits scattered [1/sr]; arguments as in `slab_brdf`.
+
+    What passes straight through, exp(-tau/mu0) of the beam in its own direction, is not part of it.
+    """
+    return _kernel(albedo, tau, mu0, mu, phase, azimuth, "transmitted")
+
+
+def _kernel(albedo: Any, tau: Any, mu0: Any, mu: Any, phase: Any, azimuth: Any, side: Side) -> Reference:
+    phase = checked_phase(phase)
+    isotropic = is_isotropic(phase)
+    if azimuth is None and not isotropic:
+        raise InvalidValueError("azimuth", "must be given [rad]", azimuth, "only isotropic scattering does without it")
+    angle = as_float_array("azimuth", 0.0 if azimuth is None else azimuth)
+    require("azimuth", angle, np.isfinite(angle), "must be finite [rad]")
     checked = checked_albedo(albedo), checked_length("tau", tau), checked_cosine("mu0", mu0), checked_cosine("mu", mu)
-    arrays = np.broadcast_arrays(*checked)
-    c, b, ins, outs = (x.ravel() for x in arrays)
+    arrays = np.broadcast_arrays(*checked, angle)
+    c, b, ins, outs, turn = (x.ravel() for x in arrays)
     value, error = np.zeros(c.shape), np.zeros(c.shape)
     with np.errstate(under="ignore", over="ignore", divide="ignore"):
         for one_c, one_b in set(zip(c.tolist(), b.tolist(), strict=True)):
-            here = (c == one_c) & (b == one_b)
+            here = np.flatnonzero((c == one_c) & (b == one_b))
             if one_c == 0 or one_b == 0:
                 continue
-            fine, coarse = (_brdf(one_c, one_b, ins[here], outs[here], n) for n in (FINE, COARSE))
-            value[here] = fine
-            error[here] = np.abs(fine - coarse) + (RELATIVE_ROUNDING + 4 * EPS * one_b) * fine + TINY
+            if isotropic and side == "reflected":
+                fine, coarse = (_brdf(one_c, one_b, ins[here], outs[here], n) for n in (FINE, COARSE))
+                value[here] = fine
+                error[here] = np.abs(fine - coarse) + (RELATIVE_ROUNDING + 4 * EPS * one_b) * fine + TINY
+                continue
+            pairs, which = np.unique(np.stack([ins[here], outs[here]]), axis=1, return_inverse=True)
+            for first in range(0, pairs.shape[1], VIEWS):
+                some = here[(which.ravel() >= first) & (which.ravel() < first + VIEWS)]
+                beams = Beams(ins[some], outs[some], turn[some])
+                value[some], error[some] = directional(one_c, one_b, beams, phase, side)
     return Reference(value.reshape(arrays[0].shape), error.reshape(arrays[0].shape), METHOD, SOURCE)
 
 

@@ -53,10 +53,17 @@ class Moments(NamedTuple):
 
 
 @lru_cache(maxsize=32)
-def _moments(phase: PhaseFunction) -> Moments:
+def phase_moments(phase: PhaseFunction) -> Moments:
+    """Return as many moments as the finest solution needs."""
     moments = phase_legendre_moments(phase, MOMENTS * LEVELS[-1])
     weight = 2 * np.arange(len(moments.value)) + 1
     return Moments(moments.value, np.sqrt(np.cumsum(weight * moments.error**2)))
+
+
+def is_isotropic(phase: PhaseFunction) -> bool:
+    """Return whether all moments of a phase function vanish, exactly, but the first."""
+    moments = phase_moments(phase)
+    return not np.any(moments.chi[1:]) and moments.change[-1] == 0
 
 
 def _first(chi: np.ndarray) -> int:
@@ -69,7 +76,7 @@ def doubled_values(
     c: np.ndarray, tau: np.ndarray, mu0: np.ndarray | None, phase: PhaseFunction, quantity: Quantity
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the quantity and its error for albedos, thicknesses and cosines (v,); for diffuse light if mu0 is None."""
-    moments = _moments(phase)
+    moments = phase_moments(phase)
     pairs, which = np.unique(np.stack([c, tau], axis=1), axis=0, return_inverse=True)
     which = which.reshape(len(c))
     value, error = np.zeros(c.shape), np.zeros(c.shape)

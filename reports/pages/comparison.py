@@ -105,14 +105,14 @@ def _settings(before: Run, after: Run) -> list[tuple[str, Any, Any]]:
 
 def _figures(pairs: list[Pair]) -> list[Picture]:
     def resolution(case: Case) -> float:
-        found = case.verdict.resolution if case.verdict else None
+        found = case.verdict.resolution if case.verdict is not None else None
         return found.value if found else 0.0
 
     def kind(case: Case) -> str:
-        return case.verdict.resolution.kind if case.verdict and case.verdict.resolution else ""
+        return case.verdict.resolution.kind if case.verdict is not None and case.verdict.resolution else ""
 
     both = [(pair.name, pair.before, pair.after) for pair in pairs if pair.before and pair.after]
-    seconds = [(name, a.seconds, b.seconds) for name, a, b in both if a.verdict and b.verdict]
+    seconds = [(name, a.seconds, b.seconds) for name, a, b in both if a.verdict is not None and b.verdict is not None]
     caught = [(name, resolution(a), resolution(b)) for name, a, b in both if kind(a) == kind(b)]
     figures = []
     for stem, what, rows in (("seconds", "Time [s]", seconds), ("resolution", "Smallest error caught", caught)):

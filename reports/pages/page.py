@@ -123,7 +123,7 @@ def _tone(run: Run) -> str:
 
 def _figures(case: Case) -> list[tuple[int, Finding, dict[str, Any]]]:
     """Return (index, finding, figure) of the different figures of a case, in the order in which the page tells the findings."""
-    findings = list(enumerate(case.verdict.findings if case.verdict else ()))
+    findings = list(enumerate(case.verdict.findings if case.verdict is not None else ()))
     findings.sort(key=lambda pair: OUTCOMES.index(pair[1].outcome))
     found: list[tuple[int, Finding, dict[str, Any]]] = []
     for index, finding in findings:
@@ -134,7 +134,7 @@ def _figures(case: Case) -> list[tuple[int, Finding, dict[str, Any]]]:
 
 def _overview(run: Run) -> Iterable[tuple[str, Any, tuple[float, float]]]:
     """Yield the figures of the whole run: only subjects that ought to be right have uniform p-values."""
-    right = [case.verdict for case in run.cases if case.verdict and case.expected == "not rejected"]
+    right = [case.verdict for case in run.cases if case.verdict is not None and case.expected == "not rejected"]
     exact = tuple(
         f.p_value for v in right for f in v.findings if f.exact and f.p_value is not None and 0 <= f.p_value <= 1
     )
@@ -145,7 +145,7 @@ def _overview(run: Run) -> Iterable[tuple[str, Any, tuple[float, float]]]:
         (case.name, case.verdict.resolution.kind, case.verdict.resolution.value)
         for case in run.cases
         if case.status == "passed"
-        and case.verdict
+        and case.verdict is not None
         and case.verdict.resolution
         and 0 < case.verdict.resolution.value < inf
     )

@@ -55,7 +55,7 @@ def systems(run: Run) -> list[System]:
     for name, cases in groups.items():
         kinds: dict[str, list[float]] = {}
         for case in cases:
-            resolution = case.verdict.resolution if case.verdict and case.status == "passed" else None
+            resolution = case.verdict.resolution if case.verdict is not None and case.status == "passed" else None
             if resolution and 0 < resolution.value < inf:
                 kinds.setdefault(plain(resolution.kind), []).append(resolution.value)
         twins = [case.twin_result for case in cases if case.twin_result]

@@ -84,7 +84,7 @@ def parse_record(record: Any, origin: str = "record") -> Run:
         if case.name in names:
             raise InvalidInputError(f"{origin}: two cases have the name {shorten(case.name)}", f"cases.{number}.name")
         names.add(case.name)
-        for index, finding in enumerate(case.verdict.findings if case.verdict else ()):
+        for index, finding in enumerate(case.verdict.findings if case.verdict is not None else ()):
             if finding.figure is not None:
                 parse_figure(finding.figure, f"{origin}: cases.{number}.verdict.findings.{index}.figure")
     return run
@@ -169,18 +169,20 @@ def write_csv(run: Run, folder: str | Path) -> Path:
 
 
 def _row(case: Case, run: Run) -> dict[str, Any]:
-    verdict, resolution = case.verdict, case.verdict.resolution if case.verdict else None
+    verdict, resolution = case.verdict, case.verdict.resolution if case.verdict is not None else None
     twin, plan = case.twin_result, case.plan
-    rejecting = [finding.check for finding in verdict.findings if finding.outcome == "rejected"] if verdict else []
+    rejecting = (
+        [finding.check for finding in verdict.findings if finding.outcome == "rejected"] if verdict is not None else []
+    )
     values = {
-        "outcome": verdict and verdict.outcome,
-        "p_value": verdict and verdict.p_value,
+        "outcome": None if verdict is None else verdict.outcome,
+        "p_value": None if verdict is None else verdict.p_value,
         "resolution_kind": resolution and resolution.kind,
         "resolution": resolution and resolution.value,
         "resolution_miss": resolution and resolution.miss,
-        "samples": verdict and verdict.samples,
-        "seed": verdict.seed if verdict else run.seed,
-        "cause": verdict and verdict.cause,
+        "samples": None if verdict is None else verdict.samples,
+        "seed": verdict.seed if verdict is not None else run.seed,
+        "cause": None if verdict is None else verdict.cause,
         "rejected_by": "; ".join(rejecting),
         "twin_outcome": twin and twin.outcome,
         "twin_rejected_by": twin and "; ".join(twin.checks),

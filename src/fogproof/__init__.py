@@ -32,7 +32,19 @@ from fogproof.errors import FogproofError, InvalidValueError
 from fogproof.scene import HenyeyGreenstein, Isotropic, Medium, PointLight, Ray, Rayleigh, Scene
 
 if TYPE_CHECKING:
-    from fogproof.checks import Finding, Verdict, check_estimator, check_sampler, compare_estimators
+    from fogproof.checks import (
+        Finding,
+        Verdict,
+        check_bound,
+        check_convergence,
+        check_estimator,
+        check_mis,
+        check_reciprocity,
+        check_sampler,
+        check_streams,
+        compare_estimators,
+        samples_for,
+    )
     from fogproof.scene.files import read_scene
     from fogproof.scene.volume_files import read_voxel_grid
     from fogproof.scene_estimator import estimator_for
@@ -72,18 +84,30 @@ __all__ = [
     "UnitSphere",
     "UnitSquare",
     "Verdict",
+    "check_bound",
+    "check_convergence",
     "check_estimator",
+    "check_mis",
+    "check_reciprocity",
     "check_sampler",
+    "check_streams",
     "compare_estimators",
     "estimator_for",
     "read_scene",
     "read_voxel_grid",
+    "samples_for",
 ]
 
 _LAZY = {
     "check_sampler": "fogproof.checks",
     "check_estimator": "fogproof.checks",
     "compare_estimators": "fogproof.checks",
+    "check_bound": "fogproof.checks",
+    "check_convergence": "fogproof.checks",
+    "check_mis": "fogproof.checks",
+    "check_reciprocity": "fogproof.checks",
+    "check_streams": "fogproof.checks",
+    "samples_for": "fogproof.checks",
     "Verdict": "fogproof.checks",
     "Finding": "fogproof.checks",
     "estimator_for": "fogproof.scene_estimator",

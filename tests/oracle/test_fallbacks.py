@@ -91,12 +91,6 @@ def newcomers(monkeypatch):
 
     room("fogproof.analytic.lights.far_patch", incident=incident)
     room("fogproof.estimators.lights.far_patch", sample=sample)
-    try:
-        yield
-    finally:
-        from fogproof.scene.kinds import _module_of
-
-        _module_of.cache_clear()
 
 
 def by_quadrature(light, shape):

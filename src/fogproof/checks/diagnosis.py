@@ -27,6 +27,7 @@ CAUSES = (
     "lost samples",
     "wrong probability of an atom",
     "wrong formula",
+    "wrong bound",
     "cancellation",
     "edge of the uniforms",
     "repeated samples",

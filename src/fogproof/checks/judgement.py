@@ -16,7 +16,7 @@ from fogproof.checks.statistics.dependence import repeated_stretches, repeats_wi
 from fogproof.checks.statistics.goodness import MISS
 from fogproof.checks.statistics.heavy import Tail
 from fogproof.checks.statistics.known import Known
-from fogproof.checks.statistics.means import mean_test, trusted, unseen_size
+from fogproof.checks.statistics.means import LAWLESS, mean_test, trusted, unseen_size
 from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.verdict import Finding, Outcome, Resolution
 from fogproof.contracts import Draws
@@ -28,6 +28,13 @@ _NOISE = 1e-13  # of the mean: a scatter that rounding alone makes
 _ABSURD = 100.0  # times all that was seen: an unseen event that would have to be larger is not waited for
 
 Again = Callable[[], Iterable[tuple[Draws, list[int]]]]
+
+
+def share_of_means(alpha: float, claims: int, declared: bool) -> tuple[float, float, float]:
+    """Return the parts of alpha that one mean has for the usual test, for declared facts, and for bets on them."""
+    share = (1 - _DEPENDENCE) * alpha / claims
+    first = (1 - _SECOND) * share
+    return (1 - LAWLESS * declared) * first, LAWLESS * first, _SECOND * share
 
 
 @dataclass(frozen=True)

@@ -4,11 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from fogproof.errors import FogproofError, UnsupportedError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+ALLOWED = ("tolerance", "bounds", "tails", "precision", "resolution")
+"""Settings that change what a pass means: they are printed with it."""
 
 Outcome = Literal["rejected", "not rejected", "inconclusive"]
 
@@ -93,7 +99,7 @@ class Finding:
         return replace(self, cause=cause)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Verdict:
     """All findings about one subject, inside one false-alarm probability `alpha`.
 
@@ -150,22 +156,42 @@ class Verdict:
             "verdict",
         )
 
+    def __repr__(self) -> str:
+        cause = f", likely {self.cause}" if self.cause else ""
+        return (
+            f"<Verdict: {self.outcome}{cause}; {len(self.findings)} findings, {self.samples} samples, seed {self.seed}>"
+        )
+
     def __str__(self) -> str:
         lines = [f"{self.outcome} (alpha {self.alpha:g}, {self.samples} samples, seed {self.seed})"]
         if self.cause:
-            lines.append(f"  likely: {self.cause}" + (f"; {self.diagnosis}" if self.diagnosis else ""))
-        order = {"rejected": 0, "inconclusive": 1, "not rejected": 2}
-        for finding in sorted(self.findings, key=lambda f: order[f.outcome]):
-            p = "" if finding.p_value is None else f" p = {finding.p_value:.3g}."
-            seen = f" {finding.resolution}." if finding.resolution and finding.outcome == "not rejected" else ""
-            where = "".join(f" {region};" for region in finding.region).removesuffix(";")
-            where = f"{where}." if where else ""
-            size = f" Effect in {finding.interval}." if finding.interval and finding.outcome == "rejected" else ""
-            lines.append(f"  {finding.outcome:12}  {finding.check}: {finding.message}.{where}{p}{size}{seen}")
-        lines += [f"  unchecked: {what}" for what in self.unchecked]
+            lines.append(f"  likely: {self.cause}")
+        lines += [f"  {f.outcome:12}  {_told(f)}" for f in self.findings if f.outcome == "rejected"]
+        lines += [f"  {f.outcome:12}  {_told(f)}" for f in self.findings if f.outcome == "inconclusive"]
+        passed = [f.check for f in self.findings if f.outcome == "not rejected"]
+        if passed:
+            lines.append(f"  not rejected: {', '.join(passed)}")
+        if self.resolution is not None:
+            lines.append(f"  {self.resolution}")
+        allowed = [
+            f"{name} {self.settings[name]}" for name in ALLOWED if self.settings.get(name) not in (None, "float64")
+        ]
+        if allowed:
+            lines.append(f"  declared: {', '.join(allowed)}")
         if self.outcome != "not rejected" and self.reproduce:
             lines.append(f"  reproduce: {self.reproduce}")
         return "\n".join(lines)
+
+    def plot(self) -> Figure:
+        """Return a matplotlib figure of what was found, rejected findings first."""
+        from fogproof.checks.plots import plotted
+
+        return plotted(self)
+
+    def _repr_html_(self) -> str:
+        from fogproof.checks.plots import as_html
+
+        return as_html(self)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the JSON-ready form; numbers that JSON lacks become "inf", "-inf" or "nan"."""
@@ -186,6 +212,15 @@ class Verdict:
                 "findings": self.findings,
             }
         )
+
+
+def _told(finding: Finding) -> str:
+    """Return one finding in a line."""
+    p = "" if finding.p_value is None else f" p = {finding.p_value:.3g}."
+    where = "".join(f" {region};" for region in finding.region).removesuffix(";")
+    where = f"{where}." if where else ""
+    size = f" Effect in {finding.interval}." if finding.interval and finding.outcome == "rejected" else ""
+    return f"{finding.check}: {finding.message}.{where}{p}{size}"
 
 
 def jsonable(value: Any) -> Any:

@@ -100,7 +100,7 @@ class Bets:
         if self.known.variance is None or self._spread == 0:
             return math.inf
         root = math.sqrt(2 * self._needed)
-        reach = (2 * self._needed + root * root / 2 + math.log(len(self.logs) / miss)) / root
+        reach = (2 * self._needed + root * root / 2 + math.log(max(len(self.logs), 1) / miss)) / root
         bias = reach * self._spread / math.sqrt(self.samples)
         own = 1 + (bias / self._spread) ** 2
         return bias * own + (self.high - self.low)

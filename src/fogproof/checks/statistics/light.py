@@ -31,6 +31,22 @@ def light_tailed_p(n: int, z: float) -> float:
     return min(1.0, max(student, 2 * exponential))
 
 
+def light_tailed_reach(n: int, alpha: float, miss: float = 0.01) -> float:
+    """Return the bias, in standard errors, that is found but for the probability `miss`; inf if none is.
+
+    The critical value by bisection, and as much again as chance takes away: Student's quantile, which few realisations make large.
+    """
+    from scipy.special import stdtrit
+
+    low, high = 1.0, 1e9
+    if n < 2 or light_tailed_p(n, high) > alpha:
+        return math.inf
+    while high > low * (1 + 1e-6):
+        middle = math.sqrt(low * high)
+        low, high = (middle, high) if light_tailed_p(n, middle) > alpha else (low, middle)
+    return high - float(stdtrit(n - 1, miss))
+
+
 @functools.lru_cache(maxsize=16)
 def _scatter(n: int) -> np.ndarray:
     """Return a sample of the law of S / X, an integration rule: the same numbers every time."""

@@ -14,7 +14,7 @@ from dataclasses import replace
 from fogproof.checks.statistics.extremes import detectable, extremes_p
 from fogproof.checks.statistics.goodness import MISS, binomial_p
 from fogproof.checks.statistics.known import NOTHING, Known
-from fogproof.checks.statistics.light import light_tailed_p
+from fogproof.checks.statistics.light import light_tailed_p, light_tailed_reach
 from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.statistics.power import binomial_reach, student_reach
 from fogproof.checks.statistics.tails import normal_quantile, student_two_sided
@@ -25,7 +25,7 @@ LARGEST_SHARE = 0.05  # of one sample in the sum of squares; beyond it the varia
 _ROUNDING = 16 * 2.0**-53  # relative: of values, and of their sum
 _LEAST = 8  # samples, below which none but declared facts tells anything
 _SHORT = 4.0  # standard deviations by which a sample's variance may fall short of the declared one
-_LAWLESS = 0.1  # share of alpha for what holds for every law
+LAWLESS = 0.1  # share of alpha for declared facts, which hold whatever the law
 
 
 def mean_test(
@@ -41,7 +41,7 @@ def mean_test(
     """Test that the expectation behind `data` lies within `error` of `reference`."""
     if data.n == 0:
         return Finding(name, "inconclusive", f"{what}: there are no data", alpha=alpha)
-    share = alpha if known == replace(NOTHING, light=known.light) else (1 - _LAWLESS) * alpha
+    share = alpha if known == replace(NOTHING, light=known.light) else (1 - LAWLESS) * alpha
     if data.low == data.high:
         finding = _constant(name, what, data, reference, error, share, known)
     elif _two_valued(data):
@@ -160,7 +160,7 @@ def _student(
     p = light_tailed_p(data.n, z) if light else _corrected(student_two_sided(data.n - 1, z), growth, z, needed)
     outcome: Outcome = "rejected" if p <= alpha else "not rejected"
     exact = not light and growth * needed**3 < 0.3 and error < 0.01 * data.stderr
-    reach = _light_reach(data, alpha) if light else student_reach(data, alpha)
+    reach = light_tailed_reach(data.n, alpha) * data.stderr if light else student_reach(data, alpha)
     resolution = Resolution(f"bias of {what}", reach + error, MISS) if math.isfinite(reach) else None
     if light:
         message += ", its tails declared to be light"
@@ -195,17 +195,6 @@ def _lawless(
         resolution = Resolution(f"bias of {what}", reach, MISS)
         return replace(finding, outcome="not rejected", message=message, p_value=p, alpha=alpha, resolution=resolution)
     return finding
-
-
-def _light_reach(data: Moments, alpha: float) -> float:
-    """Return the bias that is found but for a miss of 1 %, by the light-tailed test: bisection for its critical value."""
-    low, high = 0.0, 1e9
-    if light_tailed_p(data.n, high) > alpha:
-        return math.inf
-    for _ in range(60):
-        middle = math.sqrt(max(low, 1e-3) * high)
-        low, high = (middle, high) if light_tailed_p(data.n, middle) > alpha else (low, middle)
-    return (high + normal_quantile(MISS)) * data.stderr * (1 + 3 / math.sqrt(data.n))
 
 
 def _corrected(p_normal: float, growth: float, z: float, needed: float) -> float:

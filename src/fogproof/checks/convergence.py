@@ -1,0 +1,163 @@
+"""`check_convergence`: do more samples make a program's estimate better, and never worse?
+
+Sums in single precision stall after some ten million terms, counters overflow, generators begin again: estimates that are right
+with few samples are wrong with many. Replicates at growing counts are held to the reference, or else to those at the other counts.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from fogproof.checks.arguments import alpha_of, seed_of, tolerance_of, whole
+from fogproof.checks.diagnosis import likely_cause
+from fogproof.checks.draws import as_array
+from fogproof.checks.statistics.known import Known
+from fogproof.checks.statistics.means import mean_test
+from fogproof.checks.statistics.moments import Moments
+from fogproof.checks.streams import batch_generator
+from fogproof.checks.subject import call
+from fogproof.checks.verdict import Finding, Outcome, Verdict
+from fogproof.contracts import Reference
+from fogproof.errors import InvalidValueError, SubjectError
+
+_ROUNDING = 1e-12  # relative: of sums in another order
+_SPREAD = 0.1  # share of alpha for the scatter of replicates
+
+
+def check_convergence(
+    run: Callable[[np.random.Generator, int], Any],
+    counts: Sequence[int],
+    *,
+    reference: Reference | float | None = None,
+    tolerance: float | tuple[float, float] = 0.0,
+    replicates: int = 32,
+    alpha: float = 1e-6,
+    seed: int | None = None,
+) -> Verdict:
+    """Test that estimates from more and more samples have one expectation, and scatter less and less.
+
+    run         `run(rng, count)` -> the program's estimate from so many samples: a number, or (channels,)
+    counts      numbers of samples, growing: up to what the program is used with
+    reference   what the estimates converge to; without one, each count is held to the ones before it
+    tolerance   what is still right: relative, or (relative, absolute)
+    replicates  estimates at each count, whose law is taken to be no heavier than the exponential one
+    alpha       false-alarm probability of this call with everything in it
+    seed        any whole number; None draws a fresh one, which the verdict states
+
+    >>> check_convergence(lambda rng, n: rng.random(n).mean(), [100, 1000], reference=0.5).outcome
+    'not rejected'
+    """
+    started = time.perf_counter()
+    alpha, seed, replicates = alpha_of(alpha), seed_of(seed), whole("replicates", replicates, 8)
+    sizes = [whole("counts", count, 1) for count in counts]
+    if len(sizes) < 2 or sorted(set(sizes)) != sizes:
+        raise InvalidValueError("counts", "must be at least two numbers that grow", list(counts))
+    rows = [_estimates(run, count, replicates, seed, index) for index, count in enumerate(sizes)]
+    channels = rows[0].shape[1]
+    if any(row.shape[1] != channels for row in rows):
+        raise SubjectError("run must return as many channels at every count", "run")
+    finite = [np.isfinite(row) for row in rows]
+    bad = [
+        f"{np.count_nonzero(~good)} with {n} samples" for good, n in zip(finite, sizes, strict=True) if not good.all()
+    ]
+    if bad:
+        findings = [Finding("finite values", "rejected", f"estimates are not finite: {', '.join(bad)}", cause="bias")]
+    else:
+        near = tolerance_of(tolerance)
+        if reference is not None and all(np.ptp(row, axis=0).max() == 0 for row in rows):
+            findings = _never_worse(rows, sizes, reference, near[1])
+        else:
+            findings = _levels(rows, sizes, reference, near, (1 - _SPREAD) * alpha)
+            findings += _scatter(rows, sizes, _SPREAD * alpha)
+    name = getattr(run, "__qualname__", type(run).__name__)
+    reproduce = f"check_convergence({name}, {sizes}, ..., replicates={replicates}, alpha={alpha:g}, seed={seed})"
+    total, seconds = replicates * sum(sizes), time.perf_counter() - started
+    return Verdict(tuple(findings), alpha, total, seed, seconds, {"counts": sizes}, likely_cause(findings), reproduce)
+
+
+def _estimates(run: Callable[..., Any], count: int, replicates: int, seed: int, index: int) -> np.ndarray:
+    rows = []
+    for i in range(replicates):
+        value = as_array(
+            "run(rng, count)", call("run(rng, count)", run, batch_generator(seed, "convergence", index, i), count)
+        )
+        if value.ndim > 1:
+            raise SubjectError(f"run must return a number or (channels,), got shape {value.shape}", "run")
+        rows.append(np.atleast_1d(value).astype(np.float64))
+    if len({len(row) for row in rows}) > 1:
+        raise SubjectError("run must return as many channels every time", "run")
+    return np.array(rows)
+
+
+def _levels(
+    rows: list[np.ndarray],
+    sizes: list[int],
+    reference: Reference | float | None,
+    tolerance: tuple[float, float],
+    alpha: float,
+) -> list[Finding]:
+    """Hold every count to the reference, or to the one before it and to the first."""
+    channels = rows[0].shape[1]
+    relative, absolute = tolerance
+    jobs: list[tuple[str, str, np.ndarray, np.ndarray, np.ndarray]] = []
+    if reference is not None:
+        one = Reference.of("reference", reference)
+        value, error = (np.broadcast_to(part, (channels,)) for part in (one.value, one.error))
+        for row, n in zip(rows, sizes, strict=True):
+            jobs.append((f"mean with {n} samples", "mean", row, value, error + absolute + relative * np.abs(value)))
+    else:
+        for j, k in sorted({(k - 1, k) for k in range(1, len(sizes))} | {(0, len(sizes) - 1)}):
+            slack = absolute + relative * np.abs(rows[j].mean(axis=0))
+            name = f"{sizes[k]} against {sizes[j]} samples"
+            jobs.append((name, "difference", rows[k] - rows[j], np.zeros(channels), slack))
+    share = alpha / (len(jobs) * channels)
+    findings = []
+    for name, what, numbers, value, error in jobs:
+        for c in range(channels):
+            label = f"{name}, channel {c}" if channels > 1 else name
+            data = Moments.of(np.ascontiguousarray(numbers[:, c]))
+            known = Known(0.0, light=True) if data.m2 == 0 else Known(light=True)
+            findings.append(mean_test(label, what, data, float(value[c]), float(error[c]), share, "bias", known))
+    return findings
+
+
+def _never_worse(rows: list[np.ndarray], sizes: list[int], reference: Reference | float, slack: float) -> list[Finding]:
+    """Judge a program that is not random, such as ray marching: its error must not grow with the number of steps."""
+    truth = Reference.of("reference", reference)
+    least, findings = np.inf, []
+    for row, n in zip(rows, sizes, strict=True):
+        off = float(np.max(np.abs(row[0] - truth.value)))
+        allowed = least + float(np.max(truth.error)) + slack + _ROUNDING * float(np.max(np.abs(truth.value)))
+        worse = not off <= allowed
+        message = f"off by {off:.3g} with {n} samples" + (f", by {least:.3g} with fewer" if worse else "")
+        outcome: Outcome = "rejected" if worse else "not rejected"
+        findings.append(Finding(f"error with {n} samples", outcome, message, effect=off, cause="bias" if worse else ""))
+        least = min(least, off)
+    return findings
+
+
+def _scatter(rows: list[np.ndarray], sizes: list[int], alpha: float) -> list[Finding]:
+    """Compare the scatter of replicates with that at the first count, by Fisher's test: it must not grow.
+
+    It may where rare bright values were missed at first, so that this alone rejects nothing.
+    """
+    from scipy.special import betainc
+
+    freedom = 0.5 * (len(rows[0]) - 1)
+    share = alpha / ((len(rows) - 1) * rows[0].shape[1])
+    grown = []
+    for row, n in zip(rows[1:], sizes[1:], strict=True):
+        for first, later in zip(rows[0].var(axis=0, ddof=1), row.var(axis=0, ddof=1), strict=True):
+            p = float(betainc(freedom, freedom, first / (first + later))) if later > 0 else 1.0
+            if p <= share:
+                grown.append(f"{np.sqrt(later / first) if first > 0 else np.inf:.3g} times as much with {n}")
+    if not grown:
+        return [Finding("scatter of estimates", "not rejected", "estimates from more samples do not scatter more")]
+    message = (
+        f"estimates scatter more than with {sizes[0]} samples: {', '.join(grown)}; rare bright values, or an overflow"
+    )
+    return [Finding("scatter of estimates", "inconclusive", message)]

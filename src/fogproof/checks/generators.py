@@ -1,0 +1,157 @@
+"""`check_streams`: are the random numbers of neighbouring seeds, workers or pixels independent?
+
+A renderer seeds a generator for every pixel, thread or frame. Streams that overlap, that begin alike, or whose first numbers
+follow from one another draw patterns into images whose every pixel is right.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import numpy as np
+
+from fogproof.checks.arguments import alpha_of, whole
+from fogproof.checks.diagnosis import likely_cause
+from fogproof.checks.draws import as_array
+from fogproof.checks.statistics.dependence import fingerprints
+from fogproof.checks.statistics.tails import chi_square_above, normal_two_sided
+from fogproof.checks.subject import call
+from fogproof.checks.verdict import Finding, Outcome, Verdict
+from fogproof.errors import SubjectError
+
+_COLUMNS = 4  # first numbers of every stream that are looked at across streams
+_WINDOW = 4  # successive numbers that are never equal by chance, also in single precision
+_CELLS = 16
+_SHIFTS = (0, 1, 2)
+
+
+def check_streams(make_rng: Callable[[int], Any], k: int = 1000, *, numbers: int = 256, alpha: float = 1e-6) -> Verdict:
+    """Test that the streams `make_rng(0)` ... `make_rng(k - 1)` are independent, within each and across neighbours.
+
+    make_rng  seed, worker or pixel -> a `numpy.random.Generator`, or a function n -> (n,) uniforms in [0, 1)
+    k         how many streams; single precision is welcome
+    numbers   how many numbers of each
+    alpha     false-alarm probability of this call with everything in it; streams are fixed, so that it is one of all their kind
+
+    >>> check_streams(lambda i: np.random.default_rng([7, i]), 200).outcome
+    'not rejected'
+    """
+    started = time.perf_counter()
+    alpha, k, numbers = alpha_of(alpha), whole("k", k, 32), whole("numbers", numbers, 16)
+    u = np.stack([_stream(make_rng, i, numbers) for i in range(k)])
+    findings = [_range(u)]
+    if findings[0].outcome != "rejected":
+        findings += [_reproducible(make_rng, u, numbers), _overlaps(u)]
+        jobs = _tests(u)
+        findings += [test(alpha / len(jobs)) for test in jobs]
+    name = getattr(make_rng, "__qualname__", type(make_rng).__name__)
+    reproduce = f"check_streams({name}, {k}, numbers={numbers}, alpha={alpha:g})"
+    seconds = time.perf_counter() - started
+    return Verdict(tuple(findings), alpha, k * numbers, 0, seconds, {"streams": k}, likely_cause(findings), reproduce)
+
+
+def _stream(make_rng: Callable[[int], Any], i: int, n: int) -> np.ndarray:
+    rng = call(f"make_rng({i})", make_rng, i)
+    draw = rng.random if hasattr(rng, "random") else rng
+    if not callable(draw):
+        raise SubjectError(
+            f"make_rng({i}) must return a generator or a function n -> uniforms, got {rng!r}", "make_rng"
+        )
+    x = as_array(f"make_rng({i})", call(f"the stream of make_rng({i})", draw, n))
+    if x.shape != (n,):
+        raise SubjectError(f"the stream of make_rng({i}) must return ({n},) uniforms, got {x.shape}", "make_rng")
+    return x.astype(np.float64)
+
+
+def _range(u: np.ndarray) -> Finding:
+    wrong = int(np.count_nonzero(~((u >= 0) & (u < 1))))
+    message = f"{wrong} of {u.size} numbers lie outside [0, 1)" if wrong else f"all {u.size} numbers lie in [0, 1)"
+    outcome: Outcome = "rejected" if wrong else "not rejected"
+    return Finding("range", outcome, message, effect=wrong / u.size, cause="outside the domain" if wrong else "")
+
+
+def _reproducible(make_rng: Callable[[int], Any], u: np.ndarray, n: int) -> Finding:
+    """Compare with the same streams made again, by several threads at once."""
+    some = range(min(len(u), 32))
+    with ThreadPoolExecutor(4) as pool:
+        again = list(pool.map(lambda i: _stream(make_rng, i, n), some))
+    differ = [i for i in some if not np.array_equal(again[i], u[i])]
+    message = "streams are the same when they are made again, by four threads at once"
+    if differ:
+        message = (
+            f"{len(differ)} of {len(some)} streams differ when they are made again, the first is number {differ[0]}"
+        )
+    outcome: Outcome = "rejected" if differ else "not rejected"
+    return Finding(
+        "threads", outcome, message, effect=len(differ) / len(some), cause="dependent samples" if differ else ""
+    )
+
+
+def _overlaps(u: np.ndarray) -> Finding:
+    """Look for stretches of four numbers that occur twice, in any stream at any place."""
+    windows = np.lib.stride_tricks.sliding_window_view(u, _WINDOW, axis=1)
+    prints = fingerprints(windows.reshape(-1, _WINDOW))
+    owner = np.repeat(np.arange(len(u)), windows.shape[1])
+    order = np.argsort(prints, kind="stable")
+    equal = np.flatnonzero(prints[order][1:] == prints[order][:-1])
+    if not len(equal):
+        message = f"no {_WINDOW} successive numbers occur twice"
+        return Finding("overlap", "not rejected", message)
+    a, b = owner[order][equal[0]], owner[order][equal[0] + 1]
+    message = f"{len(equal)} stretches of {_WINDOW} numbers occur again, the first in streams {a} and {b}"
+    return Finding("overlap", "rejected", message, effect=len(equal) / len(prints), cause="dependent samples")
+
+
+def _tests(u: np.ndarray) -> list[Callable[[float], Finding]]:
+    tests: list[Callable[[float], Finding]] = [lambda share: _uniform("all numbers", u.ravel(), share)]
+    for column in range(_COLUMNS):
+        values = u[:, column]
+        steps = np.diff(values) % 1.0  # of independent uniforms: uniform, and pairwise independent
+        place = f"number {column} of every stream"
+        tests.append(lambda share, v=values, p=place: _kolmogorov(p, v, share))  # type: ignore[misc]
+        tests.append(lambda share, v=steps[::2], p=f"step to the neighbour in {place}": _kolmogorov(p, v, share))  # type: ignore[misc]
+    for shift in _SHIFTS:
+        a, b = u[:-1, : u.shape[1] - shift], u[1:, shift:]
+        tests.append(lambda share, a=a, b=b, s=shift: _correlation(f"neighbours, {s} apart", a, b, share))  # type: ignore[misc]
+        tests.append(lambda share, a=a[::2], b=b[::2], s=shift: _pairs(f"pairs of neighbours, {s} apart", a, b, share))  # type: ignore[misc]
+    return tests
+
+
+def _finding(name: str, message: str, p: float, alpha: float, effect: float) -> Finding:
+    rejected = p <= alpha
+    outcome: Outcome = "rejected" if rejected else "not rejected"
+    return Finding(name, outcome, message, p, alpha, False, effect, effect, cause="correlation" if rejected else "")
+
+
+def _kolmogorov(name: str, x: np.ndarray, alpha: float) -> Finding:
+    ordered, n = np.sort(x), len(x)
+    distance = float(max(np.max(np.arange(1, n + 1) / n - ordered), np.max(ordered - np.arange(n) / n)))
+    p = min(1.0, 2 * math.exp(-2 * n * distance**2))  # Massart 1990
+    return _finding(name, f"Kolmogorov's distance from the uniform law is {distance:.3g}", p, alpha, distance)
+
+
+def _uniform(name: str, x: np.ndarray, alpha: float) -> Finding:
+    cells = _CELLS**2
+    counts = np.bincount((x * cells).astype(np.int64), minlength=cells)
+    statistic = float(np.sum((counts - len(x) / cells) ** 2) / (len(x) / cells))
+    message = f"chi-square is {statistic:.4g} on {cells} cells"
+    return _finding(name, message, chi_square_above(cells - 1, statistic), alpha, statistic / (cells - 1))
+
+
+def _correlation(name: str, a: np.ndarray, b: np.ndarray, alpha: float) -> Finding:
+    correlation = 12 * float(np.mean((a - 0.5) * (b - 0.5)))
+    p = normal_two_sided(correlation * math.sqrt(a.size))
+    return _finding(name, f"correlation is {correlation:+.3g}", p, alpha, correlation)
+
+
+def _pairs(name: str, a: np.ndarray, b: np.ndarray, alpha: float) -> Finding:
+    cells = (a * _CELLS).astype(np.int64) * _CELLS + (b * _CELLS).astype(np.int64)
+    counts = np.bincount(cells.ravel(), minlength=_CELLS**2)
+    expected = a.size / _CELLS**2
+    statistic = float(np.sum((counts - expected) ** 2) / expected)
+    message = f"chi-square is {statistic:.4g} on {_CELLS} x {_CELLS} cells"
+    return _finding(name, message, chi_square_above(_CELLS**2 - 1, statistic), alpha, statistic / (_CELLS**2 - 1))
