@@ -9,9 +9,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from fogproof.errors import InvalidInputError
 from fogproof.reports.files import prepare_folder
 from fogproof.reports.gallery.pictures import write_gallery
-from fogproof.reports.pages.comparison import worse, write_comparison_page
+from fogproof.reports.pages.comparison import exit_code, write_comparison_page
 from fogproof.reports.pages.junit import write_junit
 from fogproof.reports.pages.page import write_page
 from fogproof.reports.pages.study import write_study_page
@@ -29,7 +30,7 @@ from fogproof.reports.records.studies import as_run, parse_study
 
 __all__ = [
     "SCHEMA",
-    "came_out_worse",
+    "compare_exit_code",
     "prepare_folder",
     "read_record",
     "write_comparison",
@@ -76,9 +77,16 @@ def write_comparison(before: dict[str, Any], after: dict[str, Any], folder: str 
     return write_comparison_page(older, newer, Path(folder))
 
 
-def came_out_worse(before: dict[str, Any], after: dict[str, Any]) -> bool:
-    """Return whether some case is right in the older record, or not in it, and wrong in the newer one."""
-    return worse(_run(before, "before"), _run(after, "after"))
+def compare_exit_code(before: dict[str, Any], after: dict[str, Any]) -> int:
+    """Return what became of the older record's cases in the newer one: 0 nothing bad, 1 one came out worse, 3 one is gone.
+
+    Two records of different kinds, a run of the catalogue and a study, cannot be compared: `InvalidInputError`.
+    """
+    older, newer = _run(before, "before"), _run(after, "after")
+    if older.kind != newer.kind:
+        what = f"a record of kind {older.kind!r} cannot be compared with one of kind {newer.kind!r}"
+        raise InvalidInputError(f"{what}; compare two runs of the same command", "kind")
+    return exit_code(older, newer)
 
 
 def _run(record: Any, origin: str) -> Run:

@@ -8,8 +8,16 @@ from pathlib import Path
 from fogproof.errors import InvalidInputError
 
 
-def prepare_folder(folder: Path) -> None:
-    """Make `folder` and see that it can be written: better to learn that before a run than after it."""
+def prepare_folder(folder: Path, page: str = "index.html", record: str = "results.json", force: bool = False) -> None:
+    """Make `folder` and see that it can be written, and that no page of somebody else's is replaced.
+
+    A page is ours if the record it was made from stands beside it. Better to learn all that before a run than after it.
+
+    force  replace whatever page is there
+    """
+    if (folder / page).exists() and not (folder / record).exists() and not force:
+        what = f"{folder / page} was not written by fogproof, for no {record} stands beside it"
+        raise InvalidInputError(f"{what}; choose another folder, or add --force to replace it", str(folder / page))
     probe = folder / f".probe.{os.getpid()}"
     write_file(probe, b"")
     probe.unlink(missing_ok=True)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from html import escape
 from typing import Literal
 
-from fogproof.reports.text import visible
+from fogproof.text import visible
 
 FONT_SIZE = 14.0
 """Of all words [px]; half of it can still be read."""

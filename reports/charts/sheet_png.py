@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fogproof.reports.charts.sheet import Dots, Group, Mark, Points, Shape, Sheet, Words
-from fogproof.reports.text import visible
+from fogproof.text import visible
 
 if TYPE_CHECKING:
     from PIL import Image, ImageFont

@@ -52,9 +52,10 @@ def pair_cases(before: Run, after: Run) -> list[Pair]:
     return sorted(pairs, key=lambda pair: (CHANGES.index(pair.change), not pair.wrong))
 
 
-def worse(before: Run, after: Run) -> bool:
-    """Return whether a case came out worse in the newer run."""
-    return any(pair.change == "worse" for pair in pair_cases(before, after))
+def exit_code(before: Run, after: Run) -> int:
+    """Return 1 if a case came out worse in the newer run, 3 if one is gone: nothing is known of it any more; else 0."""
+    changes = {pair.change for pair in pair_cases(before, after)}
+    return 1 if "worse" in changes else 3 if "gone" in changes or after.unfinished else 0
 
 
 def write_comparison_page(before: Run, after: Run, folder: Path) -> Path:
@@ -86,6 +87,8 @@ def headline(counts: dict[str, int], still: int, total: int) -> tuple[str, str]:
         first = f"{some_cases(counts['worse'])} came out worse"
     elif still:
         first = f"Nothing came out worse, but {some_cases(still)} {'is' if still == 1 else 'are'} wrong as before"
+    elif counts["gone"]:
+        first = f"{some_cases(counts['gone'])} {'is' if counts['gone'] == 1 else 'are'} gone; of the others, nothing came out worse"
     elif counts["same"] == total:
         first = "Every case came out as before"
     else:

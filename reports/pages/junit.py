@@ -4,6 +4,7 @@ rejected, surprise    <failure> with the verdict in words; so is a broken twin t
 error                 <error>
 skipped               <skipped> with the reason (what to install)
 inconclusive          <skipped>: nothing was shown wrong, and nothing right either, so it is no pass
+not run               <skipped>: the run was stopped before it came to it
 passed, known         a pass; a known finding says so in <system-out>
 """
 
@@ -15,16 +16,17 @@ from xml.etree import ElementTree
 from fogproof.reports.files import write_file
 from fogproof.reports.pages.summaries import blind
 from fogproof.reports.records.runs import Case, Run
-from fogproof.reports.text import visible
+from fogproof.text import visible
 
 
 def write_junit(run: Run, folder: str | Path) -> Path:
     """Write `folder/junit.xml` and return its path. Names may hold anything: what XML cannot say is made visible."""
-    suite = ElementTree.Element("testsuite", name=visible(f"fogproof {run.kind}"), timestamp=visible(run.started))
+    name = f"fogproof {run.kind}" + (f", {run.unfinished}" if run.unfinished else "")
+    suite = ElementTree.Element("testsuite", name=visible(name), timestamp=visible(run.started))
     properties = ElementTree.SubElement(suite, "properties")
     for name, value in {"seed": run.seed, "alpha": run.alpha, "fogproof": run.fogproof, **run.environment}.items():
         ElementTree.SubElement(properties, "property", name=visible(str(name)), value=visible(str(value)))
-    outcomes = [_add(suite, run, case) for case in run.cases]
+    outcomes = [_add(suite, run, case) for case in run.cases] + [_add_missing(suite, run, n) for n in run.missing]
     counts = {"tests": len(outcomes), "time": f"{run.seconds:.3f}"}
     counts |= {f"{tag}s" if tag != "skipped" else tag: outcomes.count(tag) for tag in ("failure", "error", "skipped")}
     suite.attrib.update({name: str(value) for name, value in counts.items()})
@@ -58,6 +60,12 @@ def _add(suite: ElementTree.Element, run: Run, case: Case) -> str:
     elif case.status == "known":
         ElementTree.SubElement(test, "system-out").text = visible(f"known finding: {case.reason}\n{explain(case)}")
     return tag
+
+
+def _add_missing(suite: ElementTree.Element, run: Run, name: str) -> str:
+    test = ElementTree.SubElement(suite, "testcase", classname=f"fogproof.{run.kind}", name=visible(name), time="0.000")
+    ElementTree.SubElement(test, "skipped", message="not run: the run was stopped before it", type="gone")
+    return "skipped"
 
 
 def explain(case: Case) -> str:

@@ -111,6 +111,8 @@ def headline(run: Run) -> tuple[str, str]:
     words["passed"] = "not rejected"
     counts = [f"{count[status]} {words.get(status, status)}" for status in STATUSES if count[status]]
     counts += [f"{len(twins) - missed} of {len(twins)} broken twins rejected"] if twins else []
+    if run.unfinished:
+        first = f"{run.unfinished} cases were run" + (f"; {first[0].lower()}{first[1:]}" if run.cases else "")
     return first, ", ".join(counts) or "The record is empty"
 
 
@@ -118,7 +120,7 @@ def _tone(run: Run) -> str:
     found = {case.status for case in run.cases}
     if found & {"rejected", "surprise", "error"} or any(row.broken for row in run.oracle) or any(map(blind, run.cases)):
         return "bad"
-    return "care" if "inconclusive" in found or not found & {"passed", "known"} else "good"
+    return "care" if run.unfinished or "inconclusive" in found or not found & {"passed", "known"} else "good"
 
 
 def _figures(case: Case) -> list[tuple[int, Finding, dict[str, Any]]]:

@@ -8,7 +8,8 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fogproof.reports.text import anchor, label, visible
+from fogproof.reports.text import anchor, label
+from fogproof.text import visible
 
 if TYPE_CHECKING:
     import jinja2

@@ -19,8 +19,8 @@ from fogproof.oracle_error import OracleError
 from fogproof.plan import Plan
 from fogproof.reports.charts.findings import parse_figure
 from fogproof.reports.files import write_file
-from fogproof.reports.text import visible
 from fogproof.reports.validation import adapter
+from fogproof.text import spreadsheet_cell
 from fogproof.verify import TwinResult
 
 SCHEMA = "fogproof/results/1"
@@ -59,7 +59,10 @@ class Case:
 
 @dataclass(frozen=True)
 class Run:
-    """A whole run, its cases in the order of the catalogue."""
+    """A whole run, its cases in the order of the catalogue.
+
+    asked  the names of the cases that were to run; () in records of old, where those that ran are all that is known
+    """
 
     schema: str
     kind: str
@@ -73,6 +76,20 @@ class Run:
     exit_code: int
     cases: tuple[Case, ...]
     oracle: tuple[OracleError, ...] = ()
+    state: Literal["finished", "interrupted"] = "finished"
+    asked: tuple[str, ...] = ()
+
+    @property
+    def missing(self) -> tuple[str, ...]:
+        """The names of the cases that were asked for and have no result."""
+        there = {case.name for case in self.cases}
+        return tuple(name for name in self.asked if name not in there)
+
+    @property
+    def unfinished(self) -> str:
+        """How much of what was asked for is there, in words; "" if all of it is."""
+        whole = len(self.cases) + len(self.missing)
+        return f"Unfinished: {len(self.cases)} of {whole}" if self.missing or self.state == "interrupted" else ""
 
 
 def parse_record(record: Any, origin: str = "record") -> Run:
@@ -158,13 +175,13 @@ def _lines(record: dict[str, Any]) -> str:
 def write_csv(run: Run, folder: str | Path) -> Path:
     """Write `folder/results.csv`, one row a case, and return its path.
 
-    A text that a spreadsheet would take for a formula (it starts with = + - @) gets an apostrophe in front.
+    No text in it can be taken for a formula, see `spreadsheet_cell`.
     """
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\r\n")
     rows = [_row(case, run) for case in run.cases]
     writer.writerow(COLUMNS)
-    writer.writerows([_cell(value) for value in row.values()] for row in rows)
+    writer.writerows(map(spreadsheet_cell, row.values()) for row in rows)
     return write_file(Path(folder) / "results.csv", out.getvalue())
 
 
@@ -181,7 +198,7 @@ def _row(case: Case, run: Run) -> dict[str, Any]:
         "resolution": resolution and resolution.value,
         "resolution_miss": resolution and resolution.miss,
         "samples": None if verdict is None else verdict.samples,
-        "seed": verdict.seed if verdict is not None else run.seed,
+        "seed": run.seed if verdict is None else verdict.seed,
         "cause": None if verdict is None else verdict.cause,
         "rejected_by": "; ".join(rejecting),
         "twin_outcome": twin and twin.outcome,
@@ -193,10 +210,3 @@ def _row(case: Case, run: Run) -> dict[str, Any]:
         "estimator": plan and plan.estimator,
     }
     return {name: values[name] if name in values else getattr(case, name) for name in COLUMNS}
-
-
-def _cell(value: Any) -> Any:
-    if not isinstance(value, str):
-        return "" if value is None else value
-    text = visible(value)
-    return f"'{text}" if text.startswith(("=", "+", "-", "@", "\t")) else text

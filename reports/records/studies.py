@@ -216,6 +216,7 @@ class Study:
     sessions: tuple[dict[str, Any], ...] = ()
     mixed: bool = False
     history: History | None = None
+    state: Literal["finished", "interrupted"] = "finished"
 
 
 def parse_study(record: dict[str, Any], origin: str = "record") -> Study:
@@ -250,6 +251,7 @@ def as_run(study: Study) -> Run:
         seconds=study.seconds,
         exit_code=study.exit_code,
         cases=tuple(cases),
+        state=study.state,
     )
 
 

@@ -168,14 +168,25 @@ def exit_code(results: Iterable[Result]) -> int:
 
 
 def record(
-    results: Iterable[Result], *, seed: int, alpha: float, command: str, started: str, seconds: float
+    results: Iterable[Result],
+    *,
+    seed: int,
+    alpha: float,
+    command: str,
+    started: str,
+    seconds: float,
+    asked: Iterable[Case] = (),
+    stopped: int = 0,
 ) -> dict[str, Any]:
     """Return the JSON-ready record of a run, cases in the order of the catalogue.
 
+    asked    the cases that were to run; all that have a result by default
+    stopped  the exit code of a run that was interrupted, 0 of one that came to its end
     `oracle` in it is the oracle's own error against proven values, measured here and now (a third of a second).
     """
     order = {case.name: i for i, case in enumerate(all_cases())}
     ordered = sorted(results, key=lambda result: order[result.case.name])
+    names = [case.name for case in asked] or [result.case.name for result in ordered]
     return jsonable(
         {
             "schema": SCHEMA,
@@ -187,7 +198,10 @@ def record(
             "alpha": alpha,
             "started": started,
             "seconds": seconds,
-            "exit_code": exit_code(ordered),
+            "exit_code": stopped or exit_code(ordered),
+            "state": "interrupted" if stopped else "finished",
+            "title": f"Unfinished: {len(ordered)} of {len(names)}" if len(ordered) < len(names) else "",
+            "asked": names,
             "oracle": oracle_errors(),
             "cases": [_case_record(result, seed, alpha) for result in ordered],
         }

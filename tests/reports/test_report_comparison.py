@@ -9,7 +9,7 @@ from fogproof.errors import InvalidInputError
 from fogproof.reports import write_comparison
 from fogproof.reports.pages.comparison import pair_cases
 from fogproof.reports.records.runs import parse_record
-from fogproof.reports.text import visible
+from fogproof.text import visible
 
 
 def run(**statuses):

@@ -21,7 +21,7 @@ from fogproof.reports.charts.resolutions import Resolutions
 from fogproof.reports.pages import page as page_module
 from fogproof.reports.pages.page import headline, write_page
 from fogproof.reports.records.runs import parse_record
-from fogproof.reports.text import visible
+from fogproof.text import visible
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ import pytest
 from report_records import HOSTILE, Page, case, entry, record, study
 
 from fogproof.errors import InvalidInputError
-from fogproof.reports import came_out_worse, write_comparison, write_report
+from fogproof.reports import compare_exit_code, write_comparison, write_report
 from fogproof.reports.charts.convergence import Convergence, Curve
 from fogproof.reports.charts.pictures import render
 from fogproof.reports.pages.study import headline
@@ -162,8 +162,8 @@ def test_two_studies_are_compared(tmp_path):
     words = Page(write_comparison(before, after, tmp_path)).words
     assert "1 case came out worse" in words
     assert "1 mended" in words
-    assert came_out_worse(before, after)
-    assert not came_out_worse(after, after)
+    assert compare_exit_code(before, after) == 1
+    assert compare_exit_code(after, after) == 0
 
 
 def test_a_study_and_a_verification_can_be_told_apart(tmp_path):

@@ -17,7 +17,8 @@ from fogproof.errors import FogproofError, InvalidInputError
 from fogproof.reports import read_record, write_report
 from fogproof.reports.pages.junit import write_junit
 from fogproof.reports.records.runs import parse_record, write_csv, write_record
-from fogproof.reports.text import anchor, file_stem, visible
+from fogproof.reports.text import anchor, file_stem
+from fogproof.text import visible
 
 
 def test_round_trip_keeps_every_value(tmp_path):

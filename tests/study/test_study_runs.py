@@ -184,7 +184,12 @@ LONG = {**SMALL, "samples": [1000, 10_000_000], "scenes": [{**LIT, "estimators":
 def test_ctrl_c_ends_cleanly_and_says_how_to_go_on(tmp_path):
     file, run = tmp_path / "study.toml", tmp_path / "run"
     file.write_text(toml(LONG))
-    process = subprocess.Popen([*COMMAND, str(file), "-o", str(run)], stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        [*COMMAND, str(file), "-o", str(run)],
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
     log = run / f"{FILE}-wal"
     while process.poll() is None and not (log.exists() and log.stat().st_size > 200_000):
         time.sleep(0.02)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import multiprocessing
 import multiprocessing.connection
+import os
 import sys
+import threading
 from collections.abc import Callable
 from typing import TypeVar
 
@@ -46,9 +48,18 @@ def within(seconds: float, check: Callable[[], Answer]) -> Answer:
 
 
 def _answer(check: Callable[[], object], pipe: multiprocessing.connection.Connection) -> None:
+    parent = multiprocessing.parent_process()
+    assert parent is not None
+    threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True).start()
     try:
         pipe.send((True, check()))
     except FogproofError as error:
         pipe.send((False, (str(error), error.path)))
     except Exception as error:  # the parent must hear of it, whatever it is
         pipe.send((False, (f"{type(error).__name__}: {error}", "sample")))
+
+
+def _end_with(sentinel: int) -> None:
+    """End this process when its parent has ended: nobody would wait for the answer."""
+    multiprocessing.connection.wait([sentinel])
+    os._exit(1)

@@ -6,6 +6,8 @@ from pathlib import Path
 
 import click
 
+from fogproof.cli.terminal import say
+
 
 @click.command("gallery")
 @click.argument("pictures", nargs=-1, metavar="[PICTURE]...")
@@ -19,7 +21,8 @@ import click
     help="Write the page and the pictures here.",
 )
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of everything sampled.")
-def command(pictures: tuple[str, ...], folder: Path, seed: int) -> int:
+@click.option("--force", is_flag=True, help="Replace a gallery.html that fogproof did not write.")
+def command(pictures: tuple[str, ...], folder: Path, seed: int, force: bool) -> int:
     """Draw the theory's pictures: the oracle's curves, and behind them what the estimators sample.
 
     PICTURE is a name under DIR/figures, such as fog; without any, all are drawn. The page's path goes to stdout.
@@ -27,7 +30,8 @@ def command(pictures: tuple[str, ...], folder: Path, seed: int) -> int:
     \b
     Example:  fogproof gallery -o build/gallery
     """
-    from fogproof.reports import write_gallery
+    from fogproof.reports import prepare_folder, write_gallery
 
-    click.echo(str(write_gallery(folder, seed, pictures)))
+    prepare_folder(folder, "gallery.html", "gallery.json", force)
+    say(str(write_gallery(folder, seed, pictures)))
     return 0

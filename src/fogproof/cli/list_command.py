@@ -6,6 +6,7 @@ import json
 
 import click
 
+from fogproof.cli.terminal import say
 from fogproof.verify import select
 
 
@@ -32,7 +33,7 @@ def command(cases: tuple[str, ...], as_json: bool) -> int:
                 "expected": case.expected,
                 "needs": case.needs,
             }
-            click.echo(json.dumps(row))
+            say(json.dumps(row))
         else:
-            click.echo(f"{case.name:{width}}  {case.title}; reference {case.oracle}; twin: {case.twin.error}")
+            say(f"{case.name:{width}}  {case.title}; reference {case.oracle}; twin: {case.twin.error}")
     return 0

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import contextlib
+import errno
 import importlib
 import os
 import sys
+import traceback
+from pathlib import Path
 from typing import Any
 
 import click
 
+from fogproof.cli.signals import code_of
+from fogproof.cli.terminal import say
 from fogproof.errors import FogproofError
 
 _COMMANDS = {
@@ -45,18 +51,49 @@ def cli() -> None:
 
 
 def main(arguments: list[str] | None = None) -> Any:
-    """Run the command line; every error a user can cause ends in one sentence and exit code 2."""
+    """Run the command line. Every end is a sentence and a code; 1 means that something was rejected, and nothing else."""
+    code = _FAULT
     try:
-        sys.exit(cli.main(arguments, standalone_mode=False))
+        code = cli.main(arguments, standalone_mode=False)
+        if sys.stdout is not None:
+            sys.stdout.flush()
+    except SystemExit as end:
+        raise end
     except FogproofError as error:
-        click.echo(f"fogproof: {error}", err=True)
-        sys.exit(2)
+        code = _say(error, _BAD_INPUT)
     except click.ClickException as error:
         error.show()
-        sys.exit(2)
-    except (click.Abort, KeyboardInterrupt):
-        click.echo("fogproof: stopped", err=True)
-        sys.exit(130)
+        code = _BAD_INPUT
+    except (click.Abort, KeyboardInterrupt) as stop:
+        code = _say("stopped", code_of(stop))
     except BrokenPipeError:
+        code = _nobody_reads()
+    except OSError as error:
+        code = _say(f"{error.strerror or error}{f': {error.filename}' if error.filename else ''}", _BAD_INPUT)
+        if error.errno in (errno.ENOSPC, errno.EIO) and error.filename is None:
+            _nobody_reads()  # what could not be written must not be tried again at the end
+    except MemoryError:
+        code = _say("there is not enough memory for this; ask for less at a time", _BAD_INPUT)
+    except Exception as error:
+        where = traceback.extract_tb(error.__traceback__)[-1]
+        what = f"{type(error).__name__}: {error} ({Path(where.filename).name}, line {where.lineno})"
+        code = _say(f"a fault of fogproof's own, please report it with the command: {what}", _FAULT)
+        if os.environ.get("FOGPROOF_DEBUG"):
+            traceback.print_exc()
+    sys.exit(code)
+
+
+_BAD_INPUT, _FAULT, _UNREAD = 2, 70, 141
+
+
+def _say(message: object, code: int) -> int:
+    with contextlib.suppress(OSError):
+        say(f"fogproof: {message}", err=True)
+    return code
+
+
+def _nobody_reads() -> int:
+    """Let what is still buffered for stdout go nowhere: Python would try again at its end, and complain."""
+    with contextlib.suppress(OSError, ValueError, AttributeError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        sys.exit(141)
+    return _UNREAD

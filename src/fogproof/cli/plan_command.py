@@ -6,6 +6,7 @@ import json
 
 import click
 
+from fogproof.cli.terminal import say
 from fogproof.plan import plan
 from fogproof.scene.files import read_scene
 
@@ -20,5 +21,5 @@ def command(scene: str, as_json: bool) -> int:
     Example:  fogproof plan scenes/foggy-lamp.toml
     """
     answer = plan(read_scene(scene))
-    click.echo(json.dumps(answer.to_dict()) if as_json else str(answer))
+    say(json.dumps(answer.to_dict()) if as_json else str(answer))
     return 0

@@ -6,6 +6,8 @@ from pathlib import Path
 
 import click
 
+from fogproof.cli.terminal import say
+
 
 @click.command("report")
 @click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
@@ -19,18 +21,20 @@ import click
 def command(folder: Path, older: Path | None) -> int:
     """Make the page of a run again from the results.json in DIR, and print its path.
 
-    With --against, print the path of DIR/comparison.html instead; its exit code is 1 if something came out worse.
+    With --against, print the path of DIR/comparison.html instead; its exit code is 1 if something came out worse, 3 if
+    nothing did but cases are gone.
 
     \b
     Examples:  fogproof report build/report
                fogproof report build/report --against last-week
     """
-    from fogproof.reports import came_out_worse, read_record, write_comparison, write_report
+    from fogproof.reports import compare_exit_code, read_record, write_comparison, write_report
 
     record = read_record(folder)
     before = read_record(older) if older else None
+    code = 0 if before is None else compare_exit_code(before, record)
     page = write_report(record, folder, keep=True)
     if before is not None:
         page = write_comparison(before, record, folder)
-    click.echo(str(page))
-    return int(before is not None and came_out_worse(before, record))
+    say(str(page))
+    return code

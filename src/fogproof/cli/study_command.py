@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import json
 import shlex
-import signal
 import sys
 from pathlib import Path
-from types import FrameType
 from typing import Any
 
 import click
+
+from fogproof.cli.signals import code_of, stoppable
+from fogproof.cli.terminal import say
+from fogproof.text import one_line
 
 
 @click.command("study")
@@ -54,18 +56,16 @@ def command(
 
     called = shlex.join(["fogproof", *sys.argv[1:]])
     plan = read_study(study)
-    before = signal.signal(signal.SIGTERM, _as_ctrl_c)
     try:
-        record = run_study(
-            plan, folder, executor=executor, workers=workers, against=against, salvage=salvage, command=called
-        )
-    except KeyboardInterrupt:
-        click.echo(f"fogproof: stopped; what was drawn is kept, go on with: {called}", err=True)
-        return 130
-    finally:
-        signal.signal(signal.SIGTERM, before)
+        with stoppable():
+            record = run_study(
+                plan, folder, executor=executor, workers=workers, against=against, salvage=salvage, command=called
+            )
+    except KeyboardInterrupt as stop:
+        say(f"fogproof: stopped; what was drawn is kept, go on with: {called}", err=True)
+        return code_of(stop)
     if as_json:
-        click.echo(json.dumps(record))
+        say(json.dumps(record))
     else:
         _print_rows(record)
     _explain(record, folder)
@@ -73,21 +73,17 @@ def command(
     return 1 if history and history["worse"] else record["exit_code"]
 
 
-def _as_ctrl_c(_signal: int, _frame: FrameType | None) -> None:
-    raise KeyboardInterrupt
-
-
 def _print_rows(record: dict[str, Any]) -> None:
     for scene in record["scenes"]:
         reference = scene["reference"]
         unit = "" if scene["unit"] == "1" else f" {scene['unit']}"
-        click.echo(f"{scene['name']}: {scene['quantity']}, reference {reference['value']:.9g}{unit}")
+        say(f"{one_line(scene['name'])}: {scene['quantity']}, reference {reference['value']:.9g}{unit}")
         width = max(len(e["name"]) for e in scene["estimators"])
         head = ("outcome", "bias", "slope", "time each", "relative", "to 1 %", "0.1 %", "0.01 %")
-        click.echo(f"  {'estimator':{width}}  " + "  ".join(f"{word:>12}" for word in head))
+        say(f"  {'estimator':{width}}  " + "  ".join(f"{word:>12}" for word in head))
         for estimator in scene["estimators"]:
             cells = "  ".join(f"{word:>12}" for word in _cells(estimator))
-            click.echo(f"  {estimator['name']:{width}}  {cells}")
+            say(f"  {estimator['name']:{width}}  {cells}")
 
 
 def _cells(estimator: dict[str, Any]) -> list[str]:
@@ -108,20 +104,20 @@ def _cells(estimator: dict[str, Any]) -> list[str]:
 
 def _explain(record: dict[str, Any], folder: Path) -> None:
     for answer in record["answers"]:
-        click.echo(f"\n{answer['question']}\n  {answer['scene']}: {answer['text']}", err=True)
+        say(f"\n{answer['question']}\n  {answer['scene']}: {answer['text']}", err=True)
     for scene in record["scenes"]:
         for estimator in scene["estimators"]:
             bad = [f for f in estimator["findings"] if f["outcome"] != "not rejected"]
             for finding in bad if estimator["status"] != "known" else ():
-                place = f"{scene['name']} / {estimator['name']}"
-                click.echo(f"\n{place}: {finding['outcome']}, {finding['check']}: {finding['message']}", err=True)
+                place = one_line(f"{scene['name']} / {estimator['name']}")
+                say(f"\n{place}: {finding['outcome']}, {finding['check']}: {finding['message']}", err=True)
             if estimator["warning"]:
-                click.echo(f"\n{scene['name']} / {estimator['name']}: {estimator['warning']}", err=True)
+                say(f"\n{scene['name']} / {estimator['name']}: {estimator['warning']}", err=True)
     for failure in record["failures"]:
         place = f"batch {failure['batch']} of {failure['scene']} / {failure['estimator']}"
-        click.echo(f"\n{place} failed {failure['attempts']} times: {failure['error']}", err=True)
+        say(f"\n{place} failed {failure['attempts']} times: {failure['error']}", err=True)
     if record["mixed"]:
-        click.echo("\nbatches of different versions or machines are mixed in this run, see 'sessions'", err=True)
+        say("\nbatches of different versions or machines are mixed in this run, see 'sessions'", err=True)
     if record["history"]:
-        click.echo(f"\nagainst the earlier run: {record['history']['text']}", err=True)
-    click.echo(f"\nresults: {folder / 'results.json'}; seed {record['seed']}", err=True)
+        say(f"\nagainst the earlier run: {record['history']['text']}", err=True)
+    say(f"\nresults: {folder / 'results.json'}; seed {record['seed']}", err=True)

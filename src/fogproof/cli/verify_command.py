@@ -12,7 +12,10 @@ from pathlib import Path
 import click
 
 from fogproof.checks import fresh_seed
+from fogproof.cli.signals import code_of, stoppable
+from fogproof.cli.terminal import say
 from fogproof.errors import InvalidValueError
+from fogproof.text import one_line
 from fogproof.verify import ALPHA, Result, exit_code, record, reproduce, run, select
 
 
@@ -34,6 +37,7 @@ from fogproof.verify import ALPHA, Result, exit_code, record, reproduce, run, se
     "--workers", type=click.IntRange(min=1), default=2, show_default=True, help="Threads; results do not depend on it."
 )
 @click.option("--twins", is_flag=True, help="Run every broken twin as well: the same checks must reject it.")
+@click.option("--force", is_flag=True, help="Replace a page in the report's folder that fogproof did not write.")
 @click.option("--json", "as_json", is_flag=True, help="Print the record of the run as JSON instead of rows.")
 def command(
     cases: tuple[str, ...],
@@ -42,6 +46,7 @@ def command(
     alpha: float,
     workers: int,
     twins: bool,
+    force: bool,
     as_json: bool,
 ) -> int:
     """Check every sampler and estimator against its reference.
@@ -57,24 +62,24 @@ def command(
     if folder is not None:
         from fogproof.reports import prepare_folder
 
-        prepare_folder(folder)
+        prepare_folder(folder, force=force)
     seed = fresh_seed() if seed is None else seed
     started, clock = datetime.datetime.now(datetime.UTC), time.perf_counter()
     results: list[Result] = []
-    interrupted = False
+    stopped = 0
     width = max(len(case.name) for case in chosen)
     if not as_json:
-        click.echo(_row(width, "case", "outcome", "smallest p", "resolution", "samples", "seconds"))
+        say(_row(width, "case", "outcome", "smallest p", "resolution", "samples", "seconds"))
     try:
-        with _progress(len(chosen)) as advance:
+        with stoppable(), _progress(len(chosen)) as advance:
             for result in run(chosen, seed=seed, alpha=alpha, workers=workers, twins=twins):
                 results.append(result)
                 if not as_json:
                     advance.print(_describe(width, result))
                 advance(result.case.name)
-    except KeyboardInterrupt:
-        interrupted = True
-        click.echo(f"stopped after {len(results)} of {len(chosen)} cases; these are kept", err=True)
+    except KeyboardInterrupt as stop:
+        stopped = code_of(stop)
+        say(f"stopped after {len(results)} of {len(chosen)} cases; these are kept", err=True)
     _explain(results, seed, alpha)
     if as_json or folder is not None:
         run_record = record(
@@ -84,14 +89,16 @@ def command(
             command=shlex.join(["fogproof", *sys.argv[1:]]),
             started=started.isoformat(timespec="seconds"),
             seconds=time.perf_counter() - clock,
+            asked=chosen,
+            stopped=stopped,
         )
         if as_json:
-            click.echo(json.dumps(run_record))
+            say(json.dumps(run_record))
         if folder is not None:
             from fogproof.reports import write_report
 
-            click.echo(f"report: {write_report(run_record, folder)}", err=True)
-    return 130 if interrupted else exit_code(results)
+            say(f"report: {write_report(run_record, folder)}", err=True)
+    return stopped or exit_code(results)
 
 
 def _row(width: int, *cells: str) -> str:
@@ -102,7 +109,7 @@ def _row(width: int, *cells: str) -> str:
 def _describe(width: int, result: Result) -> str:
     verdict = result.verdict
     if verdict is None:
-        return _row(width, result.case.name, result.status, "", result.reason, "", f"{result.seconds:.2f}")
+        return _row(width, result.case.name, result.status, "", one_line(result.reason), "", f"{result.seconds:.2f}")
     p = "" if verdict.p_value is None else f"{verdict.p_value:.2g}"
     resolution = "" if verdict.resolution is None else f"{verdict.resolution.value:.2g} {verdict.resolution.kind}"
     outcome = verdict.outcome if result.status in ("passed", "rejected", "inconclusive") else f"{result.status}"
@@ -114,7 +121,7 @@ def _explain(results: list[Result], seed: int, alpha: float) -> None:
         if not result.good:
             again = reproduce(result.case, seed, alpha) + (" --twins" if result.twin else "")
             for what in _faults(result):
-                click.echo(f"\n{result.case.name}: {what}\n  reproduce: {again}", err=True)
+                say(f"\n{result.case.name}: {what}\n  reproduce: {again}", err=True)
     counts: dict[str, int] = {}
     for result in results:
         counts[result.status] = counts.get(result.status, 0) + 1
@@ -122,7 +129,7 @@ def _explain(results: list[Result], seed: int, alpha: float) -> None:
     twins = [result.twin for result in results if result.twin]
     rejected = sum(twin.outcome == "rejected" for twin in twins)
     caught = f"; {rejected} of {len(twins)} broken twins rejected" if twins else ""
-    click.echo(f"{len(results)} cases: {summary}{caught}; seed {seed}", err=True)
+    say(f"{len(results)} cases: {summary}{caught}; seed {seed}", err=True)
 
 
 def _faults(result: Result) -> list[str]:
@@ -146,7 +153,7 @@ class _Advance:
             self._bar.update(self._task, advance=1, description=name)  # type: ignore[attr-defined]
 
     def print(self, row: str) -> None:
-        click.echo(row)
+        say(row)
 
 
 class _progress:  # noqa: N801 - reads as a with-statement

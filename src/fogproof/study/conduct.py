@@ -31,6 +31,8 @@ def run_study(
 ) -> dict[str, Any]:
     """Draw what is missing of a study in its folder, write `results.json` and `results.csv` there, and return the record.
 
+    KeyboardInterrupt goes on after the results of what has been drawn are written.
+
     executor  "threads", "processes" or "dask://host:port"
     workers   threads or processes; None for one a core
     against   folder or results.json of an earlier run that this one is compared with
@@ -47,12 +49,16 @@ def run_study(
         done = store.done()
         missing = len(batches) - len(done)
         slots = 0
+        stopped: KeyboardInterrupt | None = None
         if missing:
             with crew(executor, workers) as hands, Progress(cells, batches, done, hands.slots) as progress:
                 store.begin(started, json.dumps(environment(), sort_keys=True))
-                draw_missing(study, cells, batches, store, hands, progress.advance)
                 slots = hands.slots
-        run = Circumstances(command, started, time.perf_counter() - clock, executor, slots)
+                try:
+                    draw_missing(study, cells, batches, store, hands, progress.advance)
+                except KeyboardInterrupt as stop:
+                    stopped = stop
+        run = Circumstances(command, started, time.perf_counter() - clock, executor, slots, stopped is not None)
         record = make_record(study, cells, batches, store, run)
     from fogproof.reports.files import write_file
 
@@ -60,4 +66,6 @@ def run_study(
         record["history"] = compare(before, record)
     write_file(folder / "results.json", json.dumps(record, indent=1, allow_nan=False) + "\n")
     write_file(folder / "results.csv", table(record))
+    if stopped is not None:
+        raise stopped
     return record

@@ -8,8 +8,10 @@ from __future__ import annotations
 
 import contextlib
 import multiprocessing
+import multiprocessing.connection
 import os
 import signal
+import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from dataclasses import dataclass, field
@@ -63,7 +65,7 @@ def crew(where: str, workers: int | None) -> Iterator[Crew]:
     if where == "threads":
         made = Crew(lambda: ThreadPoolExecutor(n), n)
     elif where == "processes":
-        made = Crew(lambda: ProcessPoolExecutor(n, _context(), initializer=_deaf_to_ctrl_c), n)
+        made = Crew(lambda: ProcessPoolExecutor(n, _context(), initializer=_as_worker), n)
     else:
         raise InvalidValueError("--executor", "must be threads, processes or dask://host:port", where)
     try:
@@ -81,9 +83,20 @@ def _context() -> Any:
     return context
 
 
-def _deaf_to_ctrl_c() -> None:
-    """Leave Ctrl-C to the process that coordinates: it wants the batches that are under way."""
+def _as_worker() -> None:
+    """Leave Ctrl-C to the process that coordinates, which wants the batches that are under way; end when that process ends.
+
+    A worker that outlives it would wait for work for ever, and keep open what its parent's output is read from.
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent = multiprocessing.parent_process()
+    assert parent is not None
+    threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True).start()
+
+
+def _end_with(sentinel: int) -> None:
+    multiprocessing.connection.wait([sentinel])
+    os._exit(1)
 
 
 @contextlib.contextmanager

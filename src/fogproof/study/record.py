@@ -29,6 +29,7 @@ from fogproof.study.measures import Measured, measure
 from fogproof.study.plan import Batch, Batches
 from fogproof.study.ranking import ranked
 from fogproof.study.stored_batches import Store
+from fogproof.text import spreadsheet_cell
 from fogproof.verify import SCHEMA
 
 COLUMNS = (
@@ -46,6 +47,7 @@ class Circumstances:
     seconds: float
     executor: str
     workers: int
+    interrupted: bool = False
 
 
 def make_record(
@@ -83,6 +85,7 @@ def make_record(
             "executor": run.executor,
             "workers": run.workers,
             "exit_code": exit_code(measured, bool(failures), done < len(batches)),
+            "state": "interrupted" if run.interrupted else "finished",
             "fingerprint": study.fingerprint,
             "digest": _digest(scenes),
             "seed": study.seed,
@@ -213,12 +216,7 @@ def _rows(scene: dict[str, Any], estimator: dict[str, Any]) -> Iterable[list[Any
             "slope": (estimator["slope"] or {}).get("value"),
             "relative": (speed["relative"] or {}).get("value"),
         }
-        yield ["" if values[name] is None else _cell(values[name]) for name in COLUMNS]
-
-
-def _cell(value: Any) -> Any:
-    """A text that a spreadsheet would take for a formula gets an apostrophe in front."""
-    return f"'{value}" if isinstance(value, str) and value.startswith(("=", "+", "-", "@", "\t")) else value
+        yield [spreadsheet_cell(values[name]) for name in COLUMNS]
 
 
 def read_results(path: Path) -> dict[str, Any]:

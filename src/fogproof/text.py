@@ -1,0 +1,42 @@
+"""Text from outside made safe to show: names, messages and the output of programs may hold anything."""
+
+from __future__ import annotations
+
+from typing import Any
+
+_CONTROL_PICTURES = {code: 0x2400 + code for code in range(0x20) if chr(code) not in "\t\n"} | {0x7F: 0x2421}
+
+
+def visible(text: str) -> str:
+    """Return `text` with what no document may hold made visible: the result is valid in HTML 5, XML 1.0 and UTF-8.
+
+    Control characters become their pictures (U+2400...), bidirectional overrides (which reorder the text around them),
+    lone surrogates and non-characters become U+FFFD. Everything else, right-to-left scripts and emoji included, stays.
+    """
+    return "".join(_visible(c) for c in text) if not text.isascii() else text.translate(_CONTROL_PICTURES)
+
+
+def one_line(text: str) -> str:
+    """Return `text` on one line, safe as `visible` makes it."""
+    return " ".join(visible(text).split())
+
+
+def spreadsheet_cell(value: Any) -> Any:
+    """Return what stands in a cell of CSV: None is empty, and a text that a spreadsheet would take for a formula is none any more.
+
+    Such a text begins with = + - @, a tabulator or the end of a line; it gets an apostrophe in front.
+    """
+    if not isinstance(value, str):
+        return "" if value is None else value
+    return (
+        f"'{visible(value)}" if value.lstrip(" ").startswith(("=", "+", "-", "@", "\t", "\r", "\n")) else visible(value)
+    )
+
+
+def _visible(character: str) -> str:
+    code = ord(character)
+    if code in _CONTROL_PICTURES:
+        return chr(_CONTROL_PICTURES[code])
+    hidden = 0x80 <= code <= 0x9F or 0x202A <= code <= 0x202E or 0x2066 <= code <= 0x2069
+    impossible = 0xD800 <= code <= 0xDFFF or 0xFDD0 <= code <= 0xFDEF or code & 0xFFFE == 0xFFFE
+    return "\N{REPLACEMENT CHARACTER}" if hidden or impossible else character
