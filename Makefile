@@ -8,7 +8,7 @@ BIN    := $(VENV)/bin
 export OPENBLAS_NUM_THREADS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help verify gallery study test lint format calibrate repeat fuzz-oracle oracle-hard kill-study golden bench clean
+.PHONY: help verify gallery study test lint format calibrate repeat oracle-docs fuzz-oracle oracle-hard kill-study golden bench clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -38,8 +38,12 @@ calibrate: $(VENV)/.installed-test  ## how often the checks reject what is right
 repeat: $(VENV)/.installed-test  ## 20 runs of the catalogue with fresh seeds: no false alarm
 	$(BIN)/python tools/repeat_verify.py
 
-oracle-hard: $(VENV)/.installed-test  ## the oracle on 10^5 hard cases against many-digit arithmetic
-	$(BIN)/python tools/oracle_hard.py
+oracle-hard: $(VENV)/.installed-test  ## every function of the oracle on 10^5 hard cases; rewrites docs/oracle-accuracy.md
+	$(BIN)/python tools/oracle_hard.py --table docs/oracle-accuracy.md
+
+oracle-docs: $(VENV)/.installed  ## write the tables of docs/oracle.md and the published schema anew
+	$(BIN)/python tools/write_oracle_docs.py
+	$(BIN)/fogproof oracle --schema > schemas/oracle-1.new && mv schemas/oracle-1.new schemas/oracle-1.json
 
 fuzz-oracle: $(VENV)/.installed-test  ## 20000 broken lines to the oracle as a process: each costs its own answer and no other
 	$(BIN)/python tools/fuzz_oracle.py

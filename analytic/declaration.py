@@ -10,11 +10,17 @@ A public function with a declaration answers over JSON, and stands in the schema
 
 from __future__ import annotations
 
+import functools
+import inspect
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
+
+import numpy as np
 
 from fogproof.contracts import Reference
+from fogproof.errors import FogproofError, InvalidValueError
+from fogproof.scene.rays import Ray
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -54,14 +60,42 @@ def quantity(
     example: dict[str, Any],
     answer: Callable[..., Reference] | None = None,
 ) -> Callable[[Function], Function]:
-    """Declare a function of the oracle to be a quantity; see `Declaration`."""
+    """Declare a function of the oracle to be a quantity; see `Declaration`. Shapes that do not broadcast are refused by name."""
     declared = Declaration(unit, convention, source, example, answer)
 
     def declare(function: Function) -> Function:
-        function.declaration = declared  # type: ignore[attr-defined]
-        return function
+        @functools.wraps(function)
+        def quantity_function(*arguments: Any, **keywords: Any) -> Any:
+            try:
+                return function(*arguments, **keywords)
+            except FogproofError:
+                raise
+            except ValueError as error:
+                if "broadcast" not in str(error):
+                    raise
+                shapes = _shapes(inspect.signature(function).bind(*arguments, **keywords).arguments)
+                raise InvalidValueError(
+                    next(iter(shapes), "arguments"),
+                    "must broadcast with the other arguments",
+                    ", ".join(f"{name} {list(shape)}" for name, shape in shapes.items()),
+                    "axes must be equal or 1",
+                ) from None
+
+        quantity_function.declaration = declared  # type: ignore[attr-defined]
+        return cast(Function, quantity_function)
 
     return declare
+
+
+def _shapes(arguments: dict[str, Any]) -> dict[str, tuple[int, ...]]:
+    """Return the shapes of those arguments that have one: arrays of numbers, and rays."""
+    shapes: dict[str, tuple[int, ...]] = {}
+    for name, value in arguments.items():
+        if isinstance(value, Ray):
+            shapes[name] = value.shape
+        elif isinstance(value, int | float | list | tuple | np.ndarray | np.number) and not isinstance(value, bool):
+            shapes[name] = np.shape(value)
+    return shapes
 
 
 def declaration_of(function: Any) -> Declaration | None:

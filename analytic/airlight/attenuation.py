@@ -6,8 +6,9 @@ import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.analytic.geometry.convex_shapes import size_of, through
+from fogproof.analytic.media.coefficients import is_uniform
 from fogproof.analytic.rays.transmittance import thickness
-from fogproof.scene import AnyMedium, Medium, Ray
+from fogproof.scene import AnyMedium, Ray
 from fogproof.scene.shapes import Shape
 
 
@@ -18,11 +19,12 @@ def attenuation(
 
     length  (m,) of the ways [m], may be inf
     """
-    if not isinstance(medium, Medium):
+    if not is_uniform(medium):
         tau = thickness(medium, Ray(x, direction, np.maximum(length, TINY)), medium.channels)
         channels = medium.channels or 1
         value = tau.value.reshape(-1, channels)
-        return value, tau.error.reshape(-1, channels) + 4 * EPS * value
+        error = tau.error.reshape(-1, channels) + 4 * EPS * value
+        return value, np.where(np.isinf(value), 0.0, error)  # nothing arrives, for sure
     sigma = np.atleast_1d(medium.sigma_t)
     way, unsure = _way(shape, x, direction, length)
     value = _times(way, sigma)

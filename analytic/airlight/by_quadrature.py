@@ -25,10 +25,10 @@ from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.analytic.geometry.convex_shapes import changes_of_face, contains
 from fogproof.analytic.geometry.flat_rays import FlatRays
 from fogproof.analytic.geometry.shadows import Shadow, shadow_of_direction, shadow_of_point
-from fogproof.analytic.media.coefficients import coefficients
+from fogproof.analytic.media.coefficients import coefficients, is_uniform
 from fogproof.analytic.phase.varying import phase_values_at
 from fogproof.errors import UnsupportedError
-from fogproof.scene import AnyMedium, Medium
+from fogproof.scene import AnyMedium
 from fogproof.scene.kinds import given
 from fogproof.scene.lights import Light, strength
 from fogproof.scene.occluders import Occluder
@@ -53,7 +53,7 @@ def single_scattering_by_quadrature(
     with np.errstate(all="ignore"):
         if beam_of is not None:
             beam: Beam = beam_of(light, ray, exact)
-            if isinstance(medium, Medium) and beam.where is not None:
+            if is_uniform(medium) and beam.where is not None:
                 beam = beam._replace(edges=_with_changes(beam, changes_of_face(shape, ray, _position(light))))
             pieces = lit_pieces(medium, ray, shape, beam, None, _shadows(beam, light, ray, occluders))
             look = _from_one_direction(medium, ray, shape, beam, light, pieces)

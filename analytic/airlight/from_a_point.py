@@ -24,8 +24,9 @@ from fogproof.analytic.arithmetic.vectors import norm
 from fogproof.analytic.geometry.convex_shapes import Chord, chord, contains
 from fogproof.analytic.geometry.flat_rays import FlatRays
 from fogproof.analytic.geometry.shadows import Shadow, shadow_of_point
+from fogproof.analytic.media.coefficients import is_uniform
 from fogproof.errors import UnsupportedError
-from fogproof.scene import AnyMedium, Isotropic, Medium
+from fogproof.scene import AnyMedium, Isotropic
 from fogproof.scene.occluders import Occluder
 from fogproof.scene.shapes import Shape
 from fogproof.validate import Channels
@@ -46,7 +47,7 @@ def from_a_point(
     None if the medium is not homogeneous, the light is outside of it, or its intensity varies in another way than `Gain` knows.
     """
     where = beam.where
-    if not isinstance(medium, Medium) or where is None or not contains(shape, np.array(position)):
+    if not is_uniform(medium) or where is None or not contains(shape, np.array(position)):
         return None
     if beam.profile is not None and (beam.gain is None or airlight_phase(medium.phase).peak == np.inf):
         return None

@@ -15,6 +15,7 @@ from fogproof.analytic.geometry.convex_shapes import chord
 from fogproof.analytic.geometry.flat_rays import FlatRays
 from fogproof.analytic.geometry.shadows import Shadow
 from fogproof.analytic.media.breakpoints import breakpoints
+from fogproof.analytic.media.coefficients import is_uniform
 from fogproof.analytic.phase.varying import phase_components
 from fogproof.errors import UnsupportedError
 from fogproof.scene import AnyMedium, Medium, Ray
@@ -50,7 +51,7 @@ def lit_pieces(
     """Return the pieces of the rays between all breaks that a light may reach."""
     where = beam.where
     sure = None
-    if isinstance(medium, Medium):
+    if is_uniform(medium):
         inside = chord(shape, ray)
         end = np.minimum(inside.end, inside.start + DARK / _thinnest(medium))
         sure = inside.sure_start, np.minimum(inside.sure_end, end)

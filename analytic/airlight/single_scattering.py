@@ -11,9 +11,10 @@ from fogproof.analytic.airlight.integral import Method
 from fogproof.analytic.airlight.result import Result
 from fogproof.analytic.declaration import FOG, FORWARD, LAMP, RADIANCE, RAY, quantity
 from fogproof.analytic.geometry.flat_rays import FlatRays, blocks_of
+from fogproof.analytic.media.coefficients import is_uniform
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError, UnsupportedError
-from fogproof.scene import AnyMedium, Medium, Ray
+from fogproof.scene import AnyMedium, Ray
 from fogproof.scene.kinds import given
 from fogproof.scene.lights import Light, LightField, strength
 from fogproof.scene.media import AnyMediumField
@@ -69,7 +70,7 @@ def single_scattering(
     for occluder in occluders:
         if not isinstance(occluder, Occluder):
             raise InvalidValueError("occluders", "must be a list of Sphere and Disk", occluder)
-    if not isinstance(medium, Medium) and shape != EVERYWHERE:
+    if not is_uniform(medium) and shape != EVERYWHERE:
         raise UnsupportedError(f"a {type(medium).__name__} has bounds of its own: leave the shape away", "shape")
     medium_channels = (0.0,) * medium.channels if medium.channels else 0.0
     channels = channel_count(medium=medium_channels, light=strength(light))
@@ -90,7 +91,7 @@ def _along(
     exact: bool,
 ) -> Result:
     """Return radiance and error (n, channels) of rays of shape (n,), method and source: in closed form, or by quadrature."""
-    if light.distant and shape == EVERYWHERE and isinstance(medium, Medium):
+    if light.distant and shape == EVERYWHERE and is_uniform(medium):
         zero = np.zeros((len(ray.length), medium.channels or 1))
         return zero, zero, "no light arrives from infinitely far", "Beer's law"
     known = given(light, "fogproof.analytic.lights", "single_scattering")

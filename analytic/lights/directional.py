@@ -21,8 +21,9 @@ from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.analytic.geometry.convex_shapes import Chord, chord, faces
 from fogproof.analytic.geometry.flat_rays import FlatRays
 from fogproof.analytic.geometry.shadows import Shadow, shadow_of_direction
+from fogproof.analytic.media.coefficients import is_uniform
 from fogproof.analytic.phase.functions import phase_pdf
-from fogproof.scene import AnyMedium, Medium
+from fogproof.scene import AnyMedium
 from fogproof.scene.kinds import given
 from fogproof.scene.lights import DirectionalLight
 from fogproof.scene.occluders import Occluder
@@ -45,7 +46,7 @@ def single_scattering(
 ) -> Result | None:
     """Return the radiance (n, channels) along the flattened rays and a bound of its error; None for other media and shapes."""
     curved = given(shape, "fogproof.analytic.shapes", "parallel_light")
-    if not isinstance(medium, Medium) or (curved is None and faces(shape) is None):
+    if not is_uniform(medium) or (curved is None and faces(shape) is None):
         return None
     sigma = np.atleast_1d(medium.sigma_t)
     count = ray.length.size

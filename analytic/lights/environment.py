@@ -25,8 +25,9 @@ from fogproof.analytic.airlight.result import Result
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.analytic.geometry.convex_shapes import chord
 from fogproof.analytic.geometry.flat_rays import FlatRays
+from fogproof.analytic.media.coefficients import is_uniform
 from fogproof.analytic.phase.functions import has_poles, phase_values
-from fogproof.scene import AnyMedium, Medium
+from fogproof.scene import AnyMedium
 from fogproof.scene.kinds import given
 from fogproof.scene.lights import Environment
 from fogproof.scene.occluders import Occluder
@@ -52,7 +53,7 @@ def single_scattering(
 ) -> Result | None:
     """Return the radiance (n, channels) along the flattened rays and its estimated error; None for other media and shapes."""
     along = given(shape, "fogproof.analytic.shapes", "environment")
-    if along is None or occluders or not isinstance(medium, Medium):
+    if along is None or occluders or not is_uniform(medium):
         return None
     sigma = np.atleast_1d(medium.sigma_t)
     value, error = np.zeros((2, ray.length.size, len(sigma)))

@@ -6,7 +6,7 @@ Written pointwise and without knowledge of rays, so that a closed form along a r
 from __future__ import annotations
 
 from itertools import product
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeGuard
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.analytic.declaration import quantity
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError, UnsupportedError
-from fogproof.scene import AnyMedium
+from fogproof.scene import AnyMedium, Medium
 from fogproof.scene.arrays import PointArray
 from fogproof.scene.kinds import given
 from fogproof.scene.media import AnyMediumField
@@ -129,3 +129,8 @@ def shares(medium: Any) -> tuple[np.ndarray, np.ndarray]:
         found: tuple[np.ndarray, np.ndarray] = own(medium)
         return found
     return np.asarray(medium.albedo, float), np.subtract(1.0, medium.albedo)
+
+
+def is_uniform(medium: Any) -> TypeGuard[Medium]:
+    """Return whether all coefficients are the same everywhere, so that a shape may hold the medium and closed forms serve it."""
+    return given(medium, ROOM, "uniform") is not None

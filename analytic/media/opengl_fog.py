@@ -10,6 +10,7 @@ from fogproof.analytic.arithmetic import double_double as dd
 from fogproof.analytic.arithmetic.double_double import UNIT
 from fogproof.analytic.arithmetic.error_free import ELEMENTARY, EPS, TINY
 from fogproof.analytic.geometry.rays import Thickness, rays_with_channels
+from fogproof.analytic.media.adaptive import thickness_by_quadrature
 from fogproof.analytic.media.breakpoints import Breaks
 from fogproof.analytic.media.coefficients import Coefficients, Points, by_albedo
 from fogproof.analytic.media.squared_extinction import Integral, by_panels
@@ -39,18 +40,24 @@ def _sigma(medium: OpenGLFog, r: np.ndarray) -> np.ndarray:
 
 def breakpoints(medium: OpenGLFog, origin: np.ndarray, direction: np.ndarray, length: np.ndarray) -> Breaks:
     """Return where linear fog begins, and where nothing is left."""
-    found = np.broadcast_to([medium.start, medium.end], (len(length), 2))
-    return Breaks(np.zeros_like(length), np.minimum(length, medium.end) if medium.mode == "linear" else length, [found])
+    offset = origin - medium.eye
+    near = -np.sum(offset * direction, axis=-1)
+    p2 = np.sum((offset + near[:, None] * direction) ** 2, axis=-1)
+    halves = [np.sqrt(np.maximum(r * r - p2, 0.0)) for r in (medium.start, medium.end)]
+    found = np.stack([near, near - halves[0], near + halves[0], near + halves[1]], axis=-1)
+    leave = np.minimum(length, np.where(halves[1] > 0, near + halves[1], length)) if medium.mode == "linear" else length
+    return Breaks(np.zeros_like(length), np.maximum(leave, 0.0), [found])
 
 
 def thickness(medium: OpenGLFog, ray: Ray, channels: int | None) -> Thickness:
     """Return tau of a distance s from the eye: density s, (density s)^2, or log((end - start)/(end - s)).
 
-    Error: 2^-100 relative for "exp" and "exp2", 8 EPS for "linear".
+    Rays that start elsewhere cross the same medium, by quadrature; what enters the end of linear fog does not come out.
+    Error: 2^-100 relative for "exp" and "exp2", 8 EPS for "linear"; by quadrature, estimated.
     """
+    if medium.mode != "exp" and not (ray.origin == medium.eye).all():
+        return _off_the_eye(medium, ray, channels)
     rays = rays_with_channels(ray, channels)
-    if not (rays.origin == medium.eye).all():
-        raise UnsupportedError(f"OpenGL fog is seen from its eye {medium.eye.tolist()}: start the rays there", "ray")
     if medium.mode == "linear":
         return _linear(medium.start, medium.end, rays.length)
     s = dd.pair(rays.length if medium.density > 0 else np.zeros_like(rays.length))
@@ -60,6 +67,25 @@ def thickness(medium: OpenGLFog, ray: Ray, channels: int | None) -> Thickness:
     with np.errstate(under="ignore"):
         error = np.where(np.isinf(tau[0]), 0.0, UNIT * tau[0] + 4 * TINY)
     return Thickness(*tau, error, f"fog factor of mode {medium.mode}", SOURCE)
+
+
+def _off_the_eye(medium: OpenGLFog, ray: Ray, channels: int | None) -> Thickness:
+    """Return tau along rays through "exp2" or "linear" fog from anywhere."""
+    origin, direction, length = ray.origin.reshape(-1, 3), ray.direction.reshape(-1, 3), ray.length.reshape(-1)
+    if medium.mode == "linear":
+        reach = np.where(np.isfinite(length), length, 2 * medium.end + 2 * np.abs(origin - medium.eye).sum(axis=-1))
+        ends = np.stack([origin, origin + reach[:, None] * direction]) - medium.eye
+        gone = (np.sqrt(np.sum(ends**2, axis=-1)) >= medium.end).any(axis=0)  # the ball is convex: else all lies inside
+    else:
+        gone = np.isinf(length) & (medium.density > 0)
+    shape = ray.shape if channels is None else (*ray.shape, channels)
+    value, error = np.zeros((2, len(length), channels or 1))
+    value[gone] = np.inf
+    if not gone.all():
+        inside = thickness_by_quadrature(medium, Ray(origin[~gone], direction[~gone], length[~gone]), channels)
+        value[~gone], error[~gone] = (x.reshape(-1, channels or 1) for x in (inside.value, inside.error))
+    value, error = value.reshape(shape), error.reshape(shape)
+    return Thickness(value, np.zeros(shape), error, "adaptive Gauss-Legendre 16", SOURCE)
 
 
 def _linear(start: float, end: float, s: np.ndarray) -> Thickness:

@@ -145,13 +145,12 @@ def ball_radiance_orders(radius: float, impact: FloatArray, count: Count) -> Ref
 
 
 def _inside(name: str, value: Any, radius: Any) -> np.ndarray:
-    array = checked_length(name, value)
+    array, limit = checked_length(name, value), checked_length("radius", radius)
     try:
-        require(name, array, array <= checked_length("radius", radius), "must be at most the radius")
-    except ValueError as error:
-        if isinstance(error, InvalidValueError):
-            raise
+        array, limit = np.broadcast_arrays(array, limit)
+    except ValueError:
         raise InvalidValueError(name, "must broadcast against the radius", array.shape) from None
+    require(name, array, array <= limit, "must be at most the radius")
     return array
 
 
@@ -204,6 +203,6 @@ def _orders(radius: Any, places: np.ndarray, count: int, evaluate: Evaluate, kno
     def solution(albedos: np.ndarray) -> np.ndarray:
         balls = [solve_ball(complex_legendre_modes(c, np.ones(1), *nodes), float(R)) for c in albedos]
         found = [evaluate(c, ball, places.ravel(), COMPLEX) for c, ball in zip(albedos, balls, strict=True)]
-        return np.stack(found, axis=-1).reshape(*places.shape, -1)
+        return np.stack(found, axis=-1).reshape(*places.shape, len(albedos))
 
     return taylor_coefficients(solution, checked_count("count", count), known=lambda c: known(c, R), source=SOURCE)

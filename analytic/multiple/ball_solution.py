@@ -72,7 +72,7 @@ def seen_along_chords(ball: BallSolution, impact: np.ndarray, n: int) -> np.ndar
 
     n  nodes of a Gauss-Legendre rule on each half of the visible part of a chord
     """
-    blocks = [impact[i : i + BLOCK] for i in range(0, len(impact), BLOCK)]
+    blocks = [impact[i : i + BLOCK] for i in range(0, max(len(impact), 1), BLOCK)]  # one, if empty, for none
     return np.concatenate([_seen(ball, block, n) for block in blocks])
 
 

@@ -16,9 +16,9 @@ from fogproof.analytic.multiple.scattering_arguments import checked_albedo, chec
 from fogproof.analytic.multiple.slab_by_doubling import doubled_values, is_isotropic
 from fogproof.analytic.multiple.slab_by_modes import SOURCE, Quantity, isotropic_values
 from fogproof.contracts import Reference
-from fogproof.errors import InvalidValueError, UnsupportedError
+from fogproof.errors import UnsupportedError
 from fogproof.scene.arrays import FloatArray
-from fogproof.scene.phase import Isotropic, PhaseFunction, PhaseFunctionField
+from fogproof.scene.phase import Isotropic, PhaseFunction, PhaseFunctionField, require_phase
 from fogproof.validate import number
 
 METHOD = "discrete ordinates"
@@ -124,8 +124,7 @@ def checked_phase(phase: Any) -> PhaseFunction:
     """Return the phase function, isotropic where none is given."""
     if phase is None:
         return Isotropic()
-    if not isinstance(phase, PhaseFunction):
-        raise InvalidValueError("phase", "must be a phase function", phase, "for example HenyeyGreenstein(0.5)")
+    require_phase("phase", phase)
     return phase
 
 
@@ -134,7 +133,7 @@ def _values(albedo: Any, tau: Any, mu0: Any, phase: Any, index: Any, wanted: Qua
     beam = [] if mu0 is None else [checked_cosine("mu0", mu0)]
     arrays = np.broadcast_arrays(checked_albedo(albedo), checked_length("tau", tau), *beam)
     phase = checked_phase(phase)
-    index = number("refractive_index", index, "must be finite and >= 1", 1)
+    index = number("refractive_index", index, "must lie in [1, 100]", 1, 100)
     shape = arrays[0].shape
     c, b, *cosines = (x.ravel() for x in arrays)
     mu = cosines[0] if cosines else None

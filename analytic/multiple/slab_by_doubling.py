@@ -26,6 +26,12 @@ MOMENTS = 3
 CUT = 1e-9
 """Moment that is not seen if it is cut off."""
 
+SLOW = 0.05
+"""What is left of moments at the end of those at hand, in terms of half way, that decay like a power and not an exponential."""
+
+POWER, SAFETY = 1.0, 3.0
+"""Then errors fall at least like n^-POWER with the number of nodes, but differences change their signs: all of them count."""
+
 ENOUGH = 2e-13
 """Relative difference of two solutions with which the finer one is taken."""
 
@@ -68,8 +74,17 @@ def is_isotropic(phase: PhaseFunction) -> bool:
 
 def _first(chi: np.ndarray) -> int:
     """Return the first level worth a solution: the one before that where what is cut off would no longer be seen."""
+    if _slow(chi):
+        return 0
     seen = [abs(float(chi[MOMENTS * n])) > CUT for n in LEVELS]
     return max(0, min(sum(seen), len(LEVELS) - 1) - 1)
+
+
+def _slow(chi: np.ndarray) -> bool:
+    """Return whether the moments fall so slowly that two solutions do not tell the error: kinks, peaks, singularities."""
+    sixth = len(chi) // 6
+    last, half = (float(np.max(np.abs(chi[end - sixth : end]))) for end in (len(chi), len(chi) // 2))
+    return last > CUT and last > SLOW * half
 
 
 def doubled_values(
@@ -81,7 +96,8 @@ def doubled_values(
     which = which.reshape(len(c))
     value, error = np.zeros(c.shape), np.zeros(c.shape)
     todo = np.arange(len(c))
-    before = None
+    before: list[tuple[int, np.ndarray]] = []
+    slow = _slow(moments.chi)
     with np.errstate(under="ignore"):
         for n in LEVELS[_first(moments.chi) :]:
             if not len(todo):
@@ -93,15 +109,17 @@ def doubled_values(
             if quantity == "transmitted":  # what passes a deep slab changes with the phase function in relative terms
                 change = np.minimum(change, moments.change[MOMENTS * n] * 10 * (1 + scatterings + smaller) * found)
             rounding = (ROUNDING + 4 * EPS * smaller) * np.abs(found) + change
-            if before is None:
-                before = found
+            if not before:
+                before.append((n, found))
                 continue
-            difference = np.abs(found - before)
+            difference = np.abs(found - before[-1][1])
+            if slow:
+                difference = np.max([SAFETY * (m / n) ** POWER * np.abs(found - f) for m, f in before], axis=0)
             value[todo], error[todo] = found, difference + rounding + 2 * TINY
             if mu0 is not None:  # both so small that their quotient is lost where tau is raised to THINNEST
                 error[todo] += (tau[todo] < THINNEST) & (mu0[todo] < 1e16 * tau[todo])
             more = difference > np.maximum(ENOUGH * np.abs(found), rounding)
-            todo, before = todo[more], found[more]
+            todo, before = todo[more], [(m, f[more]) for m, f in [*before, (n, found)]]
         if quantity == "transmitted" and mu0 is not None:
             straight, its_error = exp_minus(*divide(pair(tau), pair(mu0)))
             alone = c == 0

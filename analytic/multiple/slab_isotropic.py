@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fogproof.analytic.multiple.fresnel import inside_cosine, transmissivity
+from fogproof.analytic.multiple.fresnel import inside_cosine, reflectivity, transmissivity
 from fogproof.analytic.multiple.isotropic_modes import isotropic_modes
 from fogproof.analytic.multiple.mode_integrals import collected, z_coth, z_csch
 from fogproof.analytic.multiple.slab_modes import Modes
@@ -91,7 +91,7 @@ def reflected(slabs: Slabs, view: View) -> np.ndarray:
     """Return what is seen on the lit side, (v,)."""
     lit, dark = _collected(slabs, view)
     ray, crosses = _ray(slabs, view)
-    mirror = 1 - crosses
+    mirror = _mirror(slabs, view)
     through = ray * mirror
     return mirror + crosses * (lit + through * (dark + ray * crosses)) / _echo(slabs, view)
 
@@ -100,7 +100,7 @@ def scattered_through(slabs: Slabs, view: View) -> np.ndarray:
     """Return what is seen on the dark side and has been scattered, (v,)."""
     lit, dark = _collected(slabs, view)
     ray, crosses = _ray(slabs, view)
-    return crosses * (dark + ray * (1 - crosses) * lit) / _echo(slabs, view)
+    return crosses * (dark + ray * _mirror(slabs, view) * lit) / _echo(slabs, view)
 
 
 def unscattered(slabs: Slabs, view: View) -> np.ndarray:
@@ -157,8 +157,12 @@ def _ray(slabs: Slabs, view: View) -> tuple[np.ndarray, np.ndarray]:
     return np.exp(-slabs.tau[view.slab] / view.inside), transmissivity(slabs.refraction, view.inside, view.outside)
 
 
+def _mirror(slabs: Slabs, view: View) -> np.ndarray:
+    return reflectivity(slabs.refraction, view.inside, view.outside)
+
+
 def _echo(slabs: Slabs, view: View) -> np.ndarray:
     """Return 1 - (ray mirror)^2, which does not cancel where both are nearly 1."""
     ray, crosses = _ray(slabs, view)
     faded = -np.expm1(-slabs.tau[view.slab] / view.inside)
-    return (faded + ray * crosses) * (1 + ray * (1 - crosses))
+    return (faded + ray * crosses) * (1 + ray * _mirror(slabs, view))

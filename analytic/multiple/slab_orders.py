@@ -76,7 +76,7 @@ def _orders(tau: Any, mu0: Any, count: Any, phase: Any, pick: Callable[[Leaving]
         return pick(leaving_slab(modes, float(b), mu0.ravel()))
 
     def solution(albedos: np.ndarray) -> np.ndarray:
-        return np.stack([at(c) for c in albedos], axis=-1).reshape(*mu0.shape, -1)
+        return np.stack([at(c) for c in albedos], axis=-1).reshape(*mu0.shape, len(albedos))
 
     orders = taylor_coefficients(
         solution, checked_count("count", count), known=lambda c: real(c, b, mu0, phase), source=SOURCE

@@ -43,11 +43,11 @@ def rayleigh_scattering_coefficient(
     require("diameter", d, np.isfinite(d) & (d >= 0), "must be finite and >= 0 [m]")
     require("number_density", rho, np.isfinite(rho) & (rho >= 0), "must be finite and >= 0 [1/m^3]")
     require("wavelength", lam, np.isfinite(lam) & (lam > 0), "must be finite and > 0 [m]")
-    # |eta^2 - 1| and |eta^2 + 2| as products, so that neither cancels at eta = 1 or at the resonance eta = i sqrt(2).
-    numerator = np.abs(eta - 1) * np.abs(eta + 1)
-    denominator = np.abs(_minus_i_root_two(eta)) * np.abs(_minus_i_root_two(eta.conj()))
+    # |eta^2 - 1|/|eta^2 + 2| factor by factor: neither cancels at eta = 1 or at the resonance eta = i sqrt(2), none overflows.
+    first = np.abs(eta - 1) / np.abs(_minus_i_root_two(eta))
+    second = np.abs(eta + 1) / np.abs(_minus_i_root_two(eta.conj()))
     with np.errstate(under="ignore"):
-        value = (2 * np.pi**5 / 3) * (d / lam) ** 4 * d**2 * (numerator / denominator) ** 2 * rho
+        value = (2 * np.pi**5 / 3) * (d / lam) ** 4 * d**2 * (first * second) ** 2 * rho
         error = 40 * EPS * value + TINY * (1 + rho)
     return Reference(np.asarray(value), np.asarray(error), "closed form", "Bohren & Huffman 1983, eq. 5.8")
 

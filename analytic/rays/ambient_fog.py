@@ -67,4 +67,5 @@ def ambient_fog(
         value = survived * background + extinguished * source
         error = 12 * EPS * value + inherited * np.maximum(background, source)
         error = error + 6 * TINY * (1 + np.maximum(np.maximum(background, ambient), medium.emission))
+        error = np.where((np.asarray(background) == 0) & (source == 0), 0.0, error)  # nothing shines: 0 for sure
     return Reference(value, error, f"lerp of radiances, {tau.method}", SOURCE)

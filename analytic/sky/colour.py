@@ -58,11 +58,16 @@ def sky_colour(mu_sun: FloatArray, mu_view: FloatArray, azimuth: FloatArray) -> 
 
     The sun's spectrum is the daylight illuminant D65. Error: rounding, 1e-13 relative or so.
     """
-    angles = (as_float_array(*x)[..., None] for x in (("mu_sun", mu_sun), ("mu_view", mu_view), ("azimuth", azimuth)))
-    sky = plane_parallel_sky(air_optical_depth(WAVELENGTHS).value, *angles)
-    eps = np.max(sky.error / sky.value, axis=-1) / EPS
-    lowest = np.minimum(*np.broadcast_arrays(as_float_array("mu_sun", mu_sun), as_float_array("mu_view", mu_view)))
-    return _tristimulus(sky.value, eps + 60 * 0.6 / lowest, "single scattering, plane-parallel")
+    named = {"mu_sun": mu_sun, "mu_view": mu_view, "azimuth": azimuth}
+    mu_sun, mu_view, azimuth = np.broadcast_arrays(*(as_float_array(*item) for item in named.items()))
+    sky = plane_parallel_sky(
+        air_optical_depth(WAVELENGTHS).value, mu_sun[..., None], mu_view[..., None], azimuth[..., None]
+    )
+    with np.errstate(over="ignore"):
+        slack = 60 * (2 + 2 * 0.6 / np.maximum(mu_sun, mu_view))  # 48 EPS of the optical depth, which is below 0.6
+    inherited = _tristimulus(sky.error, np.zeros(slack.shape), "")
+    found = _tristimulus(sky.value, slack, "single scattering, plane-parallel")
+    return Reference(found.value, found.error + inherited.value, found.method, found.source)
 
 
 def _tristimulus(spectrum: np.ndarray, eps: np.ndarray, method: str) -> Reference:
@@ -73,7 +78,9 @@ def _tristimulus(spectrum: np.ndarray, eps: np.ndarray, method: str) -> Referenc
     shape = cmfs.shape
     XYZ = colour.msds_to_XYZ(sun * spectrum, cmfs, method="Integration", k=1, shape=shape) / brightness
     rounding = 4 * len(WAVELENGTHS) + eps
-    return Reference(XYZ, EPS * rounding[..., None] * np.abs(XYZ), f"sum over the spectrum, {method}", SOURCE)
+    with np.errstate(invalid="ignore"):
+        error = np.where(XYZ != 0, EPS * rounding[..., None] * np.abs(XYZ), 0.0)
+    return Reference(XYZ, error, f"sum over the spectrum, {method}", SOURCE)
 
 
 @cache

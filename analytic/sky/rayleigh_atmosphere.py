@@ -88,7 +88,7 @@ def plane_parallel_sky(tau: FloatArray, mu_sun: FloatArray, mu_view: FloatArray,
     azimuth  (...) between view and sun [rad]
 
     Single scattering by Rayleigh's phase function, no absorption, a black ground, a flat earth. The arguments broadcast.
-    Error: some 30 eps, and 8 eps of tau over the smaller cosine.
+    Error: some 40 eps, and 8 eps of the shorter way, tau over the larger cosine.
     Source: Chandrasekhar 1960, Radiative Transfer, section 7, with single scattering as the source.
     """
     tau, azimuth = as_float_array("tau", tau), as_float_array("azimuth", azimuth)
@@ -100,10 +100,13 @@ def plane_parallel_sky(tau: FloatArray, mu_sun: FloatArray, mu_view: FloatArray,
     sines = np.sqrt((1 - mu_sun) * (1 + mu_sun) * (1 - mu_view) * (1 + mu_view))
     mu = np.clip(mu_sun * mu_view + sines * np.cos(azimuth), -1, 1)
     scattered = phase_pdf(Rayleigh(), mu)
-    with np.errstate(over="ignore", under="ignore"):
+    with np.errstate(over="ignore", under="ignore", invalid="ignore"):
         to_sun, to_view = tau / mu_sun, tau / mu_view
-        # The integral is symmetric in the two paths; the shorter one is the better factor, nothing grows.
-        value = scattered.value * to_view * np.exp(-np.minimum(to_sun, to_view)) * phi1(np.abs(to_sun - to_view))
-        slack = 2 * ELEMENTARY + 30 * EPS + 4 * EPS * np.abs(azimuth) + 4 * EPS * np.maximum(to_sun, to_view)
-        error = value * slack + TINY
+        shorter = np.minimum(to_sun, to_view)
+        # The integral is symmetric in the two paths; the shorter one is the better factor, nothing grows. What is left
+        # tends to 1 along an endless view under a sun that shines, and to nothing where no light arrives.
+        left = np.where(to_view < np.inf, to_view * phi1(np.abs(to_sun - to_view)), 1.0)
+        value = np.where(shorter < np.inf, scattered.value * np.exp(-shorter) * left, 0.0)
+        slack = 2 * ELEMENTARY + 40 * EPS + 4 * EPS * np.abs(azimuth) + 8 * EPS * shorter
+        error = np.where(value > 0, value * slack, 0.0) + TINY
     return Reference(value, error, "closed form", "Chandrasekhar 1960, section 7")

@@ -41,6 +41,9 @@ TAIL = 42.0
 FAR = 700.0
 """The largest |s| there is: sinh does not overflow."""
 
+NEAREST = 1e-290
+"""The smallest h/|a| whose asinh and squares are still numbers."""
+
 ROUNDS = 7
 TOLERANCE = 1e-13
 
@@ -83,6 +86,8 @@ def airlight_second_moment(
     require("h", h, np.isfinite(h) & (h >= 0), "must be finite and >= 0 [m]", "h is a distance from the line")
     require("a", a, np.isfinite(a), "must be finite [m]")
     require("b", b, b >= a, "must be >= a [m]", "the surface is at b; inf if there is none")
+    seen = (h == 0) | (h >= NEAREST * np.abs(a))
+    require("h", h, seen, f"must be 0 or at least {NEAREST:g} |a| [m]", "nearer, the light is on the line")
     endless = np.isinf(b) & ((sampling == "uniform") | ((sampling == "distance") & (sigma == 0)))
     if endless.any():
         raise UnsupportedError(f"{sampling} sampling has no density on an infinite segment: give it an end", "b")

@@ -9,13 +9,17 @@ from fogproof.analytic.airlight.ray_and_light import place
 from fogproof.analytic.airlight.single_scattering import single_scattering
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.analytic.declaration import FOG, LAMP, RAY, quantity
+from fogproof.analytic.media.coefficients import is_uniform
 from fogproof.analytic.variance.airlight import Sampling, airlight_second_moment
 from fogproof.contracts import Reference
 from fogproof.errors import UnsupportedError
-from fogproof.scene import Medium, PointLight, Ray
+from fogproof.scene import PointLight, Ray
 from fogproof.scene.lights import LightField
 from fogproof.scene.media import AnyMediumField
 from fogproof.validate import channel_count
+
+NOTHING = 2000.0
+"""Mean free paths that leave less than 1e-860, which no 1/r^4 and no intensity that is a float64 lifts to one."""
 
 
 @quantity(
@@ -39,7 +43,7 @@ def single_scattering_second_moment(
     place of each coordinate, as for `single_scattering`.
     Source: Kulla & Fajardo 2012, Importance sampling techniques for path tracing in participating media (equiangular).
     """
-    if not isinstance(medium, Medium):
+    if not is_uniform(medium):
         raise UnsupportedError(f"single scattering needs a homogeneous Medium, got {type(medium).__name__}", "medium")
     if not isinstance(light, PointLight):
         raise UnsupportedError(f"single scattering needs a PointLight, got {type(light).__name__}", "light")
@@ -63,7 +67,15 @@ def single_scattering_second_moment(
         relative = np.expm1(4 * sigma * uncertainty - 4 * np.log1p(-turn) + 2 * bend / (1 - bend))
         relative = np.where((turn < 1) & (bend < 1), relative, np.inf)
         value = np.where(scale > 0, moment.value * scale * scale, 0.0)
-        error = (moment.error + moment.value * (relative + 6 * EPS)) * scale * scale + TINY
+        # All light comes at least as far as the camera is from the lamp. Beyond NOTHING mean free paths none is left, wherever
+        # in its last digit the lamp stands; nearer, a value of 0 with a lamp that may stand anywhere says nothing.
+        dark = sigma * (start - 4 * uncertainty) > NOTHING
+        inherited = np.where(
+            moment.value > 0,
+            moment.value * (relative + 6 * EPS),
+            np.where(np.isfinite(relative) | dark, 0.0, np.inf),
+        )
+        error = (moment.error + inherited) * scale * scale + TINY
         error = np.where((scale > 0) & np.isfinite(value), error, 0.0)
     return Reference(value.reshape(shape), error.reshape(shape), moment.method, moment.source)
 

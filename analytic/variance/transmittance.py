@@ -186,9 +186,11 @@ def ambient_fog_variance(
         source = np.where(tau.value > 0, scattered * ambient + absorbed * medium.emission, 0.0)
         contrast = source - background
         off = 4 * EPS * source + EPS * np.abs(contrast)
-        value = contrast * contrast * survived * lost
+        chance = survived * lost
+        value = np.where(chance > 0, contrast * contrast * chance, 0.0)
         spread = (2 * ELEMENTARY + 6 * EPS) * survived * lost + (rounding + 2 * inherited) * lost + survived * tau.error
-        error = contrast * contrast * spread + (2 * np.abs(contrast) + off) * off * survived * lost + TINY
+        error = np.where(spread > 0, contrast * contrast * spread, 0.0) + TINY
+        error = error + np.where(chance > 0, (2 * np.abs(contrast) + off) * off * chance, 0.0)
     return Reference(value, error, f"two values with probabilities T and 1 - T, {tau.method}", SOURCE)
 
 

@@ -17,10 +17,13 @@ from fogproof.estimators.airlight.shapes import through
 from fogproof.estimators.free_paths.extinction import Extinction, along
 from fogproof.estimators.free_paths.fog import everywhere, shares
 from fogproof.estimators.media import ROOM
+from fogproof.estimators.media.sources import sources_at
 from fogproof.estimators.phase.functions import phase_value
+from fogproof.estimators.phase.varying import phase_value_at
 from fogproof.scene import AnyMedium, PhaseFunction, Ray
 from fogproof.scene.kinds import given
 from fogproof.scene.lights import Light
+from fogproof.scene.media import sources_vary
 from fogproof.scene.occluders import Occluder
 from fogproof.scene.phase import constant_phase
 from fogproof.scene.shapes import EVERYWHERE, Shape
@@ -30,7 +33,7 @@ from fogproof.scene.shapes import EVERYWHERE, Shape
 class LitMedium:
     """The setting of one camera ray; all of it grey.
 
-    medium       albedo and phase function the same everywhere
+    medium       any kind; `albedo` and `phase` are for those who need them the same everywhere
     ray          one ray
     light        any light; an environment only where that is said
     occluders    between the light and the ray; the camera sees past them
@@ -112,18 +115,24 @@ class LitMedium:
         if sample is not None:
             return self._scattered_from_extent(sample, t, rng)
         mu, distance, irradiance = self._illumination(self.start + t)
-        value = self.albedo * self.extinction.sigma(t) * phase_value(self.phase, mu) * irradiance
+        value = self.extinction.sigma(t) * irradiance
         uniform = given(self.medium, ROOM, "uniform")
-        plain = uniform is not None and self.shape == EVERYWHERE and self.shadow_rays == "exact"
-        if plain and not self.occluders:
+        if uniform is not None and self.shape == EVERYWHERE and self.shadow_rays == "exact" and not self.occluders:
             sigma_t = float(uniform(self.medium))
+            value *= self.albedo * phase_value(self.phase, mu)
             return value * np.exp(-sigma_t * distance) if sigma_t > 0 else value, np.ones_like(t)
         x = self.points(t)
         w = towards(self.light, x)
+        value *= self._source(x, mu)
         if self.occluders:
             value *= lit(self.occluders, x, w, distance)
         arriving, cost = self.transmittance(x, w, distance, rng)
         return value * arriving, 1 + cost
+
+    def _source(self, x: np.ndarray, mu: np.ndarray) -> np.ndarray:
+        """Return albedo times phase function at points x (3, n), either of which may differ from place to place [1/sr]."""
+        albedo = sources_at(self.medium, x.T)[0] if sources_vary(self.medium) else self.albedo
+        return albedo * phase_value_at(self.medium.phase, x, mu)
 
     def _scattered_from_extent(
         self, sample: Sampler, t: np.ndarray, rng: np.random.Generator
@@ -132,7 +141,7 @@ class LitMedium:
         x = self.points(t)
         w, distance, arriving = sample(x, rng.random((len(t), 2)))
         mu = np.clip(self.ray.direction @ w, -1, 1)
-        value = self.albedo * self.extinction.sigma(t) * phase_value(self.phase, mu) * arriving
+        value = self._source(x, mu) * self.extinction.sigma(t) * arriving
         if self.occluders:
             value *= lit(self.occluders, x, w, distance)
         through, cost = self.transmittance(x, np.ascontiguousarray(w), distance, rng)

@@ -72,3 +72,51 @@ def _extinction(medium: OpenGLFog, r: np.ndarray) -> np.ndarray:
     within = (r >= medium.start) & (r < medium.end)
     beyond = np.where(r < medium.start, 0.0, np.inf)
     return np.divide(1.0, medium.end - r, out=beyond, where=within)
+
+
+def depth_towards(medium: OpenGLFog, x: np.ndarray, w: np.ndarray, way: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the optical depth of many ways that need not start at the eye, and one look each.
+
+    Along a line r^2 = p^2 + t^2. "exp2" has the area under a hyperbola; "linear" the integral of 1/(end - r) outside of the sphere
+    where the fog begins, and no end to it beyond the one where it ends.
+    """
+    offset = x - medium.eye[:, None]
+    start = np.sum(offset * w, axis=0)
+    p = np.sqrt(np.maximum(np.sum((offset - start * w) ** 2, axis=0), 0.0))
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        stop = start + way
+        match medium.mode:
+            case "exp":
+                depth = medium.density * way if medium.density > 0 else np.zeros_like(way)
+            case "exp2":
+                depth = medium.density**2 * (_hyperbola(stop, p) - _hyperbola(start, p))
+            case _:
+                depth = _linear_depth(medium.start, medium.end, start, stop, p)
+    return depth, np.ones_like(way)
+
+
+def _hyperbola(t: np.ndarray, p: np.ndarray) -> np.ndarray:
+    """Return twice the integral of sqrt(p^2 + t^2) from 0 to t."""
+    bent = p * p * np.arcsinh(t / np.where(p > 0, p, 1.0))
+    return t * np.hypot(t, p) + np.where(p > 0, bent, 0.0)
+
+
+def _linear_depth(begin: float, end: float, start: np.ndarray, stop: np.ndarray, p: np.ndarray) -> np.ndarray:
+    """Return the integral of 1/(end - r) over what lies outside of r = begin; inf if the way leaves r < end."""
+    leaves = (np.hypot(start, p) >= end) | (np.hypot(stop, p) >= end)
+    half = np.sqrt(np.maximum(begin * begin - p * p, 0.0))  # half of the chord through the clear ball
+    p = np.maximum(p, 1e-9 * end)
+    parts = [(start, np.minimum(stop, -half)), (np.maximum(start, half), stop)]
+    if not half.any():
+        parts = [(start, stop)]
+    total = np.zeros_like(p)
+    for low, high in parts:
+        total += np.where(high > low, _primitive(high, p, end) - _primitive(low, p, end), 0.0)
+    return np.where(leaves, np.inf, total)
+
+
+def _primitive(t: np.ndarray, p: np.ndarray, end: float) -> np.ndarray:
+    """Return the integral of 1/(end - sqrt(p^2 + t^2)) from 0 to t, by t = p sinh u."""
+    tangent = t / (p + np.hypot(t, p))  # tanh(u/2)
+    steep = np.sqrt((end + p) / (end - p))
+    return 2 * end / np.sqrt((end - p) * (end + p)) * np.arctanh(steep * tangent) - np.arcsinh(t / p)

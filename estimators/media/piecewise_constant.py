@@ -33,8 +33,10 @@ def kernel_data(medium: PiecewiseConstantMedium) -> LayerData:
 
 def depth(medium: PiecewiseConstantMedium, ray: Ray, t: np.ndarray) -> np.ndarray:
     """Return the sum over the layers of what the ray has of each, up to t."""
-    inside = _inside(medium, ray.origin[:, None], ray.direction[:, None], t)
-    return inside @ medium.sigma_t.reshape(len(medium.sigma_t), -1)
+    inside, sigma = _inside(medium, ray.origin[:, None], ray.direction[:, None], t), medium.sigma_t
+    with np.errstate(invalid="ignore"):
+        parts = inside[..., None] * sigma.reshape(len(sigma), -1)
+    return np.where(np.isnan(parts), 0.0, parts).sum(axis=1)  # endless vacuum
 
 
 def depth_towards(
@@ -76,3 +78,11 @@ def feature_size(medium: PiecewiseConstantMedium, ray: Ray) -> float:
     """Return the way through the thinnest layer."""
     with np.errstate(divide="ignore"):
         return float(np.diff(medium.boundaries).min() / np.abs(medium.axis @ ray.direction))
+
+
+def sources(medium: PiecewiseConstantMedium, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return albedo and emission of the layers that points x (n, 3) lie in; where no layer is, those of the nearest."""
+    layer = np.searchsorted(medium.boundaries, x @ medium.axis, side="right") - 1
+    layer = np.clip(layer, 0, len(medium.sigma_t) - 1)
+    albedo, emission = (a[layer] if a.ndim else a for a in (medium.albedo, medium.emission))
+    return albedo, emission

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fogproof.errors import InvalidValueError
+from fogproof.estimators.media.sources import looked_up
 from fogproof.estimators.tracking.compiled import CompiledField, is_compiled
 from fogproof.estimators.tracking.noise import FractalNoise
 from fogproof.scene import Procedural, Ray
@@ -82,3 +83,8 @@ def greatest(medium: Procedural, shape: Shape) -> float:
 def feature_size(medium: Procedural, ray: Ray) -> float:
     """Return the detail that the medium declares."""
     return medium.detail
+
+
+def sources(medium: Procedural, x: np.ndarray) -> tuple[Any, Any]:
+    """Return albedo and emission at points x (n, 3)."""
+    return looked_up(medium.albedo, x), looked_up(medium.emission, x)

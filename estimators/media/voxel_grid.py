@@ -68,3 +68,16 @@ def feature_size(medium: VoxelGrid, ray: Ray) -> float:
     size = (medium.upper - medium.lower) / medium.sigma_t.shape[:3]
     with np.errstate(divide="ignore"):
         return float(1 / np.sum(np.abs(ray.direction) / size))
+
+
+def sources(medium: VoxelGrid, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return albedo and emission at points x (n, 3) of a grey grid, interpolated as its extinction is."""
+    from fogproof.estimators.kernels.tracking import look_up
+
+    data, found = kernel_data(medium), []
+    for value in (medium.albedo, medium.emission):
+        at = np.broadcast_to(value, (len(x), 1)) if value.ndim == 0 else np.empty((len(x), 1))
+        if value.ndim:
+            look_up(data._replace(sigma=value[..., None]), np.ascontiguousarray(x), at)
+        found.append(at[:, 0])
+    return found[0], found[1]

@@ -22,6 +22,7 @@ from fogproof.scene import (
     Ray,
     VoxelGrid,
 )
+from fogproof.scene.kinds import given
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -64,7 +65,7 @@ class Transmittances:
         )
 
     def _paths(self, medium: AnyMedium, ray: Ray) -> np.ndarray:
-        if isinstance(medium, VoxelGrid | Procedural | PiecewiseConstantMedium):
+        if given(medium, "fogproof.estimators.media", "along") is None:  # no closed form
             return DeltaFreePath(medium, ray).sample(self.rng, self.samples).x
         return FreePath(along(medium, ray), 10.0).distances(self.rng.random((self.samples, 1)))
 

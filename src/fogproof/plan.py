@@ -7,20 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from fogproof.scene import (
-    AnisotropicMedium,
-    AnyMedium,
-    ExponentialMedium,
-    LinearMedium,
-    Medium,
-    OpenGLFog,
-    PiecewiseConstantMedium,
-    Procedural,
-    Ray,
-    Scene,
-    VoxelGrid,
-)
-from fogproof.scene.lights import strength
+from fogproof.capabilities import capabilities, emits, is_lit, is_too_far, scatters
+from fogproof.scene import AnyMedium, Ray, Scene
+from fogproof.scene.media import is_empty
 
 
 @dataclass(frozen=True)
@@ -34,68 +23,72 @@ class Term:
 
 @dataclass(frozen=True)
 class Plan:
-    """The terms of a scene, the oracle's function that solves it, and the estimator that serves it ("" if none is needed)."""
+    """The terms of a scene, the oracle's function that solves it, and the estimator that serves it ("" if none is needed).
+
+    refused  why neither follows the scene, "" if they do; see `fogproof.capabilities`
+    """
 
     terms: tuple[Term, ...]
     solver: str
     estimator: str
     why: str
+    refused: str = ""
 
     def to_dict(self) -> dict[str, Any]:
         """Return the JSON-ready form."""
         terms = [{"name": term.name, "kept": term.kept, "why": term.why} for term in self.terms]
-        return {"terms": terms, "solver": self.solver, "estimator": self.estimator, "why": self.why}
+        return {"terms": terms, "solver": self.solver, "estimator": self.estimator, "why": self.why} | (
+            {"refused": self.refused} if self.refused else {}
+        )
 
     def __str__(self) -> str:
         width = max(len(term.name) for term in self.terms)
         lines = [f"{'keep' if term.kept else 'drop'}  {term.name:{width}}  {term.why}" for term in self.terms]
-        solved = [f"solver     {self.solver}", f"estimator  {self.estimator or 'none'}", f"           {self.why}"]
+        solved = [
+            f"solver     {self.solver or 'none'}",
+            f"estimator  {self.estimator or 'none'}",
+            f"           {self.why}",
+        ]
         return "\n".join(lines + solved)
 
 
 def plan(scene: Scene) -> Plan:
-    """Return the cheapest exact or unbiased treatment of a scene."""
-    medium = scene.medium
-    tracking = _TRACKING[type(medium)]
-    empty = not _present(medium)
-    scatters, absorbs = not empty and _any(_scattering(medium)), not empty and _any(_absorption(medium))
-    emits = absorbs and _any(medium.emission)
-    background = _any(scene.background)
-    light = scene.scattering == "single" and scene.light is not None and _any(strength(scene.light)) and scatters
-    light = light and not _too_far(scene)
-    ambient = scene.scattering == "ambient" and _any(scene.ambient) and scatters
+    """Return the cheapest exact or unbiased treatment of a scene, or what stands in its way."""
+    medium, how = scene.medium, capabilities(scene)
+    present, lit, glows = not is_empty(medium), is_lit(scene), emits(medium)
+    ambient = scene.scattering == "ambient" and bool(np.any(scene.ambient)) and scatters(medium)
+    background = bool(np.any(scene.background))
     terms = (
-        Term("attenuation", not empty, "sigma_t = 0: T = 1" if empty else tracking),
+        Term("attenuation", present, _ATTENUATION[how.camera_rays] if present else "sigma_t = 0: T = 1"),
         Term("background", background, "attenuated by T" if background else "its radiance is 0"),
-        Term("emission", emits, "sigma_a L_e > 0" if emits else "sigma_a L_e = 0"),
-        Term("in-scattering", light or ambient, _in_scattering(scene, scatters, light, ambient)),
+        Term("emission", glows, "sigma_a L_e > 0" if glows else "sigma_a L_e = 0"),
+        Term("in-scattering", lit or ambient, _in_scattering(scene, lit, ambient)),
         Term("colour", *_colour(scene)),
     )
-    homogeneous = isinstance(medium, Medium)
-    if light and scene.light is not None and not scene.light.distant:
+    through = _THROUGH[how.camera_rays]
+    if how.refused:
+        return Plan(terms, "", "", f"refused: {how.refused}", how.refused)
+    if lit and how.placing == "equiangular":
         integral = (
             "the airlight integral has no elementary form but converges fast after t = h sinh s"
-            if homogeneous and scene.light.delta
+            if how.uniform and scene.light is not None and scene.light.delta
             else "nested adaptive quadrature, the transmittance of both legs by the medium's own rule"
         )
         why = f"{integral}; equiangular sampling about the light cancels its 1/r^2"
-        return Plan(terms, "single_scattering", f"Airlight, placing 'equiangular'; {_THROUGH[type(medium)]}", why)
-    if light:
+        return Plan(terms, "single_scattering", f"Airlight, placing 'equiangular'; {through}", why)
+    if lit:
         why = "parallel light: no 1/r^2 is in the way, the event goes where the medium is"
-        return Plan(terms, "single_scattering", f"Airlight, placed in the medium; {_THROUGH[type(medium)]}", why)
-    if emits or ambient:
-        varying = isinstance(medium, Procedural) and (callable(medium.albedo) or callable(medium.emission))
-        if varying:
-            why = "sources that vary along the ray: a path that collides looks them up"
-            return Plan(terms, "radiance_by_quadrature", "delta tracking to one collision", why)
-        what = (
-            "the closed lerp, no integral is left" if homogeneous else "a lerp over the optical thickness, cell by cell"
-        )
+        return Plan(terms, "single_scattering", f"Airlight, placing '{how.placing}'; {through}", why)
+    if (glows or ambient) and how.sources == "collision":
+        why = "sources that vary along the ray: a path that collides looks them up"
+        return Plan(terms, "ambient_fog", "delta tracking to one collision", why)
+    if glows or ambient:
+        what = "the closed lerp, no integral is left" if how.uniform else "a lerp over the optical thickness"
         why = f"sources that are constant along the ray: {what}"
-        return Plan(terms, "ambient_fog", f"the same lerp; {_THROUGH[type(medium)]}", why)
-    if not empty:
+        return Plan(terms, "ambient_fog", f"the same lerp; {through}", why)
+    if present:
         why = "nothing is gained along the ray: the background times T"
-        return Plan(terms, "transmittance", f"background x T; {_THROUGH[type(medium)]}", why)
+        return Plan(terms, "transmittance", f"background x T; {through}", why)
     return Plan(terms, "the background itself", "", "an empty medium changes nothing: no random numbers at all")
 
 
@@ -117,69 +110,17 @@ def scene_of(subject: Any) -> Scene | None:
     )
 
 
-_TRACKING: dict[type, str] = {
-    Medium: "homogeneous: T = exp(-sigma_t s), no tracking",
-    AnisotropicMedium: "constant along each ray: T = exp(-sigma_t(w) s), no tracking",
-    LinearMedium: "linear extinction: closed form, no tracking",
-    ExponentialMedium: "exponential extinction: closed form, no tracking",
-    OpenGLFog: "a function of the distance from the eye: closed form, no tracking",
-    PiecewiseConstantMedium: "layers: a sum over their boundaries",
-    VoxelGrid: "voxels: a sum over the crossed cells, exact in each",
-    Procedural: "a user's function: tracking under its majorant",
+_ATTENUATION = {
+    "closed": "the optical thickness has a closed form: no tracking",
+    "cells": "cells: a sum over those crossed, exact in each",
+    "ratio": "no closed form: tracking under a majorant",
 }
-_CLOSED = "T in closed form"
-_THROUGH: dict[type, str] = {
-    Medium: _CLOSED,
-    AnisotropicMedium: _CLOSED,
-    LinearMedium: _CLOSED,
-    ExponentialMedium: _CLOSED,
-    OpenGLFog: _CLOSED,
-    PiecewiseConstantMedium: "T layer by layer",
-    VoxelGrid: "T by regular tracking",
-    Procedural: "T by ratio tracking",
-}
+_THROUGH = {"closed": "T in closed form", "cells": "T by regular tracking", "ratio": "T by ratio tracking"}
 """How `fogproof.scene_estimator` finds the transmittance."""
 
 
-def _any(value: Any) -> bool:
-    """Return whether a coefficient is anywhere above 0; a function is taken to be."""
-    return callable(value) or bool(np.any(value))
-
-
-def _present(medium: AnyMedium) -> bool:
-    match medium:
-        case Medium() | PiecewiseConstantMedium() | VoxelGrid():
-            return bool(np.any(medium.sigma_t))
-        case LinearMedium():
-            return bool(np.any(np.greater(medium.sigma_0, 0))) or bool(np.any(medium.gradient))
-        case ExponentialMedium():
-            return bool(np.any(medium.sigma_0))
-        case AnisotropicMedium():
-            return bool(np.any(medium.sigma)) and bool(np.any(medium.S))
-        case OpenGLFog(mode="linear"):
-            return True
-        case OpenGLFog():
-            return bool(medium.density)
-    return True
-
-
-def _too_far(scene: Scene) -> bool:
-    """Return whether light from infinitely far would have to cross an endless medium."""
-    return scene.light is not None and scene.light.distant and isinstance(scene.medium, Medium)
-
-
-def _scattering(medium: AnyMedium) -> Any:
-    return medium.sigma_s if isinstance(medium, Medium) else medium.albedo
-
-
-def _absorption(medium: AnyMedium) -> Any:
-    if isinstance(medium, Medium):
-        return medium.sigma_a
-    return medium.albedo if callable(medium.albedo) else np.subtract(1.0, medium.albedo)
-
-
-def _in_scattering(scene: Scene, scatters: bool, light: bool, ambient: bool) -> str:
-    if not scatters:
+def _in_scattering(scene: Scene, light: bool, ambient: bool) -> str:
+    if not scatters(scene.medium):
         return "sigma_s = 0"
     if scene.scattering == "none":
         return "scattering = 'none'"
@@ -190,7 +131,7 @@ def _in_scattering(scene: Scene, scatters: bool, light: bool, ambient: bool) -> 
         return "constant in-scattered radiance: the phase function integrates to 1 and drops out"
     if scene.scattering == "ambient":
         return "the ambient radiance is 0"
-    return "no light arrives from infinitely far" if _too_far(scene) else "the light is off"
+    return "no light arrives from infinitely far" if is_too_far(scene) else "the light is off"
 
 
 def _colour(scene: Scene) -> tuple[bool, str]:

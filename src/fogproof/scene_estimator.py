@@ -8,11 +8,13 @@ closed form, and unbiased with any unbiased estimate of T. The last one is a sin
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from fogproof.capabilities import capabilities, emits, scatters
 from fogproof.contracts import Draws, Estimator
 from fogproof.errors import UnsupportedError
 from fogproof.estimators import (
@@ -22,12 +24,13 @@ from fogproof.estimators import (
     along,
     delta_tracking,
 )
-from fogproof.estimators.airlight.placing import Placing
-from fogproof.estimators.airlight.shadow_rays import ShadowRays
 from fogproof.estimators.free_paths.fog import source_per_collision
+from fogproof.estimators.media.sources import sources_at
+from fogproof.estimators.tracking.tracked import clip_to_box
 from fogproof.plan import plan
-from fogproof.scene import AnyMedium, ExponentialMedium, LinearMedium, Medium, Procedural, Ray, Scene, VoxelGrid
+from fogproof.scene import AnyMedium, Ray, Scene
 from fogproof.scene.lights import Light
+from fogproof.scene.media import box
 from fogproof.scene.one_channel import one_channel
 
 
@@ -100,7 +103,7 @@ class Unattenuated:
 class LookedUpSource:
     """Sources that vary along the ray: a path that collides looks albedo and emission up there, any other sees the background."""
 
-    medium: Procedural
+    medium: AnyMedium
     ray: Ray
     ambient: float
     background: float
@@ -111,7 +114,7 @@ class LookedUpSource:
         paths = delta_tracking(self.medium, rays, rng)
         collided = paths.event == 0
         x = self.ray.origin + paths.distance[collided, None] * self.ray.direction
-        albedo, emission = _at(self.medium.albedo, x), _at(self.medium.emission, x)
+        albedo, emission = sources_at(self.medium, x)
         value = np.full(n, self.background)
         value[collided] = albedo * self.ambient + (1 - albedo) * emission
         return Draws(value, paths.cost)
@@ -121,10 +124,14 @@ def estimator_for(scene: Scene) -> SceneEstimator | ColouredSceneEstimator:
     """Return the cheapest unbiased estimator of what the camera sees along one ray, see `plan`.
 
     It draws radiances [W/(m^2 sr)], (n,), or (n, channels) of a coloured scene, whose mean is `analytic.radiance(scene)`; without
-    variance where nothing is random. Shadow rays are exact or by ratio tracking, never marched.
+    variance where nothing is random. Shadow rays are exact or by ratio tracking, never marched. A scene that cannot be followed is
+    refused in the words of its plan.
     """
     if scene.ray.shape:
         raise UnsupportedError(f"an estimator looks along one ray, got a batch of shape {scene.ray.shape}", "ray")
+    refused = capabilities(scene).refused
+    if refused:
+        raise UnsupportedError(refused, "scene")
     if scene.channels is not None:
         return ColouredSceneEstimator(tuple(_grey(one_channel(scene, c)) for c in range(scene.channels)))
     return _grey(scene)
@@ -142,12 +149,20 @@ def _grey(scene: Scene) -> SceneEstimator:
 
 
 def _airlight(scene: Scene, light: Light) -> Estimator:
-    closed = isinstance(scene.medium, Medium | LinearMedium | ExponentialMedium)
-    shadow_rays: ShadowRays = "exact" if closed or isinstance(scene.medium, VoxelGrid) else "ratio"
-    placing: Placing = "equiangular"
-    if light.distant:
-        placing = "distance" if closed else "uniform"
-    return Airlight(scene.medium, scene.ray, light, placing, scene.occluders, shadow_rays=shadow_rays)
+    how, ray = capabilities(scene), _ended(scene.medium, scene.ray)
+    if ray is None or (
+        how.placing == "distance" and not along(scene.medium, ray).depth(np.array(float(ray.length))) > 0
+    ):
+        return Unattenuated(0.0)  # nothing on the ray scatters
+    return Airlight(scene.medium, ray, light, how.placing, scene.occluders, shadow_rays=how.shadow_rays)
+
+
+def _ended(medium: AnyMedium, ray: Ray) -> Ray | None:
+    """Return an endless ray up to where it leaves the medium's box, if that ends; None if it misses it."""
+    if np.isfinite(ray.length) or not np.isfinite(box(medium)).all():
+        return ray
+    _, leave = clip_to_box(ray.origin[None], ray.direction[None], ray.length[None], *box(medium))
+    return Ray(ray.origin, ray.direction, float(leave[0])) if leave[0] > 0 else None
 
 
 def _direct(scene: Scene, attenuated: bool) -> Estimator:
@@ -155,19 +170,15 @@ def _direct(scene: Scene, attenuated: bool) -> Estimator:
     ambient = float(np.asarray(scene.ambient)) if scene.scattering == "ambient" else 0.0
     if not attenuated:
         return Unattenuated(background)
-    if isinstance(medium, Procedural) and (callable(medium.albedo) or callable(medium.emission)):
+    how = capabilities(scene)
+    if how.sources == "collision" and (emits(medium) or (ambient > 0 and scatters(medium))):
         return LookedUpSource(medium, ray, ambient, background)
-    return Lerp(_through(medium, ray), background, source_per_collision(medium, ambient))
+    source = source_per_collision(medium, ambient) if how.sources == "lerp" else 0.0
+    return Lerp(_THROUGH[how.camera_rays](medium, ray), background, source)
 
 
-def _through(medium: AnyMedium, ray: Ray) -> Estimator:
-    match medium:
-        case Procedural():
-            return RatioTransmittance(medium, ray)
-        case VoxelGrid():
-            return RegularTransmittance(medium, ray)
-    return ClosedTransmittance(medium, ray)
-
-
-def _at(value: Any, x: np.ndarray) -> np.ndarray:
-    return np.broadcast_to(value(x) if callable(value) else value, (len(x),))
+_THROUGH: dict[str, Callable[[Any, Ray], Estimator]] = {
+    "closed": ClosedTransmittance,
+    "cells": RegularTransmittance,
+    "ratio": RatioTransmittance,
+}

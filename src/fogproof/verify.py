@@ -224,7 +224,7 @@ def _case_record(result: Result, seed: int, alpha: float) -> dict[str, Any]:
         "expected": case.expected,
         "reason": result.reason,
         "source": case.source,
-        "reference": f"fogproof.analytic: {case.oracle}",
+        "reference": f"fogproof.analytic: {case.oracle}" if case.reference is not None else case.oracle,
         "twin": case.twin.error,
         "twin_result": result.twin,
         "plan": None if result.verdict is None else _plan(case),

@@ -50,7 +50,7 @@ def test_names_are_unique_and_every_case_is_documented():
 
 def test_every_sampler_on_the_sphere_declares_its_convention():
     for case in all_cases():
-        if case.kind == "sampler" and isinstance(case.make().domain, UnitSphere):
+        if case.kind == "sampler" and case.reference is not None and isinstance(case.make().domain, UnitSphere):
             assert "mean_cosine" in case.options
 
 

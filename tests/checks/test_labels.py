@@ -236,13 +236,14 @@ def test_an_unseen_peak_of_half_the_mass_is_found():
 
     peak = cone((0.3, 0.5, -0.7), 0.2665)[1]
     right = check_sampler(isotropic, constant(0.5 / TURN), UnitSphere(), dimensions=2, samples=N)
-    assert "outside features" in str(right), "what fills less than that may never have been looked at"
+    known = next(f for f in right.findings if f.check == "normalisation")
+    assert "outside features" in str(known.resolution), "what fills less than that may never have been looked at"
     verdict = check_sampler(isotropic, lambda x: 0.5 / TURN + 0.5 * peak(x), UnitSphere(), dimensions=2, samples=N)
     assert verdict.outcome == "rejected", str(verdict)
     whole = next(f for f in verdict.findings if f.check == "labels")
     integral, error = map(float, whole.message.split("integrates to ")[1].split(" +- "))
     assert integral > 1.2, "most of what nobody sampled is found"
-    assert abs(integral - 1.5) < 7 * error, str(verdict)
+    assert abs(integral - 1.5) < max(7 * error, 0.1), str(verdict)
 
 
 def test_a_mirror_in_a_mixture_is_an_atom_on_the_sphere():
@@ -282,10 +283,10 @@ def test_samples_that_are_given_up_count_one_way_or_the_other():
     options = {"dimensions": 2, "samples": N}
     every = check_sampler(microfacet, microfacet_pdf, UnitHemisphere(), **options)
     assert every.outcome == "not rejected", str(every)
-    assert "the pdf counts every sample" in str(every)
+    assert "the pdf counts every sample" in every.findings[0].message
     valid = check_sampler(microfacet, lambda x: microfacet_pdf(x) / SUCCESS, UnitHemisphere(), **options)
     assert valid.outcome == "not rejected", str(valid)
-    assert "the pdf is that of the valid ones" in str(valid)
+    assert "the pdf is that of the valid ones" in valid.findings[0].message
     for factor in (0.98, 1.02, 0.98 / SUCCESS):
         wrong = check_sampler(microfacet, lambda x, f=factor: f * microfacet_pdf(x), UnitHemisphere(), **options)
         assert wrong.outcome == "rejected", str(wrong)

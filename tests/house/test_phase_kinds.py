@@ -24,7 +24,6 @@ FOR_ITS_KIND = {
     "analytic/airlight/pegoraro2009.py": "a published method for isotropic scattering only",
     "analytic/airlight/pegoraro2010.py": "a published method whose series are per kind",
     "analytic/airlight/sun2005.py": "a published method for isotropic scattering only",
-    "analytic/multiple/slab.py": "isotropic scattering has a solver of its own",
     "src/fogproof/study/methods/paths.py": "the half space is solved for isotropic scattering only",
 }
 """Files outside the rooms that ask for one kind, and why."""
@@ -73,4 +72,4 @@ def test_nobody_outside_the_rooms_asks_for_the_kind():
             inside = place.startswith(ROOMS) or any(parent.is_symlink() for parent in path.parents)
             if not inside and (asked := _asked(path)):
                 asking[place] = asked
-    assert set(asking) <= set(FOR_ITS_KIND), asking
+    assert set(asking) == set(FOR_ITS_KIND), asking

@@ -63,7 +63,7 @@ class SamplerCase:
     """A sampler against its oracle.
 
     make        builds the sampler; nothing heavy happens before
-    reference   x -> `Reference`: the oracle's density
+    reference   x -> `Reference`: the oracle's density; None where a sampler is held to its own pdf alone
     oracle      the name of the oracle's functions, for people
     options     further arguments of `check_sampler`: cdf, axis, mean_cosine, albedo, precision, …
     source      the paper
@@ -78,7 +78,7 @@ class SamplerCase:
     name: str
     title: str
     make: Callable[[], Sampler]
-    reference: Callable[[np.ndarray], Reference]
+    reference: Callable[[np.ndarray], Reference] | None
     oracle: str
     source: str
     twin: Twin

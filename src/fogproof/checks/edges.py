@@ -36,6 +36,7 @@ def edge_uniforms(subject: Subject, labels: dict[float | None, int]) -> Finding:
     except SubjectError as error:
         return Finding(_NAME, "rejected", f"with {tried}, {error}", cause=_CAUSE)
     watch.broken.pop("positive pdf", None)
+    watch.broken.pop("infinite pdf", None)
     for name, (_, example) in watch.broken.items():
         return Finding(
             _NAME, "rejected", f"with {tried}, {name}: {example}{_which(subject, u, draw, name)}", cause=_CAUSE

@@ -16,7 +16,7 @@ from fogproof.checks.statistics.dependence import repeated_stretches, repeats_wi
 from fogproof.checks.statistics.goodness import MISS
 from fogproof.checks.statistics.heavy import Tail
 from fogproof.checks.statistics.known import Known
-from fogproof.checks.statistics.means import LAWLESS, mean_test, trusted, unseen_size
+from fogproof.checks.statistics.means import DOUBT, LAWLESS, mean_test, trusted, unseen_size
 from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.verdict import Finding, Outcome, Resolution
 from fogproof.contracts import Draws
@@ -192,7 +192,7 @@ class _Claim:
             return replace(
                 finding, outcome="inconclusive", message=message, p_value=None, exact=False, cause="", region=()
             )
-        if finding.outcome == "inconclusive" and known.variance is not None and complete:
+        if finding.outcome == "inconclusive" and known.variance is not None and complete and p > DOUBT:
             message = f"{start}; rare values matter, so tested by Catoni's function and the exact variance"
             resolution = Resolution(f"bias of {finding.check}", bets.detectable(MISS) + self.error, MISS)
             return replace(

@@ -54,7 +54,7 @@ class Mixture:
         """Return the mixture that follows pilot points (n, ...) of the domain."""
         rng = batch_generator(seed, "labels", 0, 0)
         u = law.coordinates(points, rng.random((len(points), len(law.axes))))
-        rounded = len(points) > 0 and bool(_moved(subject, points[:_CHECKED]).any())
+        rounded = len(points) > 0 and not law.stepped and bool(_moved(subject, points[:_CHECKED]).any())
         return Mixture(subject, law, Tree.of(u, _PER_LEAF), seed, most, rounded)
 
     def wider(self, points: np.ndarray) -> Mixture:
@@ -71,7 +71,7 @@ class Mixture:
         found, wider, side = np.empty((0, k)), self, _LOOK ** (-1 / k)
         for _ in range(_ROUNDS):  # each finds more of the place whose edge the last one found
             follow = unseen[rng.integers(0, len(unseen), int(_FOLLOWED * n))]
-            follow = np.clip(follow + side * (rng.random(follow.shape) - 0.5), 0, 1)
+            follow = np.clip(follow + side * (2 * rng.random(follow.shape) - 1), 0, 1)
             found = np.concatenate([found, follow])
             wider = replace(self, tree=Tree.of(rng.permutation(np.concatenate([own, found])), _PER_LEAF))
             x, u = wider._drawn(rng, n)

@@ -90,12 +90,17 @@ class Watch:
             self._note(
                 "declared events", unknown, _quote("label", draw.event, "is not among the declared events"), len(x)
             )
-        zero = ~((p > 0) & (p < np.inf))
+        pole = (
+            p == np.inf
+        )  # rounding gathers samples where a density diverges: no error, and nothing can be said of them
+        zero = ~(p > 0)
         if zero.any() and not isinstance(
             subject.domain, Discrete
         ):  # the very edge of the support may be missed by rounding
             near = [subject.density(y) for y in nudged(points[zero], subject.roundoff)]
             zero[zero] = ~np.any([np.isfinite(q) & (q > 0) for q in near], axis=0)
+        if pole.any():
+            self._note("infinite pdf", pole, lambda i: f"pdf is inf at the sampled x = {shorten(points[i])}", len(at))
         self._note("positive pdf", zero, lambda i: f"pdf is {p[i]:g} at the sampled x = {shorten(points[i])}", len(at))
         if draw.pdf is not None:
             self._returned(draw.pdf, x, at, p)
@@ -194,6 +199,10 @@ class Watch:
         for name, n in self.seen.items():
             if name in self.broken:
                 count, example = self.broken[name]
+                if name == "infinite pdf":
+                    message = f"{count} of {n} samples: {example}; a pole so strong that rounding gathers samples on it"
+                    found.append(Finding(name, "inconclusive", message, effect=count / n))
+                    continue
                 cause = "wrong measure" if "times pdf" in example else _CAUSES[name]
                 message = f"{count} of {n} samples: {example}"
                 found.append(Finding(name, "rejected", message, effect=count / n, cause=cause))

@@ -21,6 +21,7 @@ _COMMANDS = {
     "verify": "Check every sampler and estimator against its reference.",
     "list": "Show the cases of the catalogue.",
     "oracle": "Answer JSON requests with reference values and error bounds.",
+    "golden": "Write reference values with error bounds for offline test suites.",
     "plan": "Say which terms a scene needs, and which methods serve it.",
     "study": "Measure speed against error, resumable, on one core or a cluster.",
     "report": "Make the page of a run again, or compare two runs.",

@@ -85,15 +85,16 @@ class ByKind:
 
         choices: dict[Any, Any] = {
             kind: core_schema.no_info_before_validator_function(without_kind, handler.generate_schema(cls))
-            for kind, cls in self._table().items()
+            for kind, cls in self.table().items()
         }
         return core_schema.tagged_union_schema(choices, discriminator=self._kind if self.default else "kind")
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
         # Which choice is which kind: a kind may hold others of its room, so its own description may not be there yet.
-        return {**handler(schema), "kinds": list(self._table()), "default_kind": self.default}
+        return {**handler(schema), "kinds": list(self.table()), "default_kind": self.default}
 
-    def _table(self) -> dict[str, type]:
+    def table(self) -> dict[str, type]:
+        """Return kind -> type."""
         return kinds_of(self.types) if isinstance(self.types, str) else self.types
 
     def _kind(self, table: Any) -> Any:

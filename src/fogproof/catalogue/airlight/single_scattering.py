@@ -100,9 +100,9 @@ def _case(
         return _times(factor, LitMedium(medium, ray, light, **more), placing)
 
     def variance() -> Any:
-        assert isinstance(medium, Medium)
+        uniform: Any = medium
         assert isinstance(light, PointLight)
-        return single_scattering_variance(medium, ray, light, placing)
+        return single_scattering_variance(uniform, ray, light, placing)
 
     geometry = {key: value for key, value in more.items() if key != "shadow_rays"}
     return EstimatorCase(
@@ -139,8 +139,8 @@ def _distance(lit: LitMedium, t: np.ndarray) -> np.ndarray:
 
 
 def _sigma_t(lit: LitMedium) -> float:
-    assert isinstance(lit.medium, Medium)
-    return float(lit.medium.sigma_t)
+    uniform: Any = lit.medium
+    return float(uniform.sigma_t)
 
 
 def _constant(value: float) -> Factor:

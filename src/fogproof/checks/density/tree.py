@@ -1,6 +1,7 @@
 """A histogram on a k-d tree: a density in the unit cube that follows a pilot sample, drawn from and evaluated exactly.
 
-The cells have equal numbers of pilot points. Each is halved along its longest side at the median, and drawn in to its points as
+The cells have equal numbers of pilot points. Each is halved at the median along its longest side, measured in
+the spread of all points, and drawn in to its points as
 long as it has many, so that the empty space around a narrow support is no part of any cell (Bentley 1975, with the shrinking of
 Arya & Mount 1998). What the pilot misses is left to whoever mixes the histogram with a density that is nowhere zero.
 """
@@ -14,6 +15,7 @@ import numpy as np
 _BLOCK = 1 << 14  # points at once: what is computed of them stays in the cache
 _CROWD = 64  # points of a cell that is drawn in to them
 _MARGIN = 4.0  # mean distances of points along a side, by which more than they span is kept
+_THINNEST = 1e-12  # spread of points along an axis: a thinner layer is not cut along it
 _FLAT = 1e-300  # volume of a cell that cannot be drawn from
 
 
@@ -44,12 +46,14 @@ class Tree:
         cells = points[: size << depth][None]
         low, high = np.zeros((1, k)), np.ones((1, k))
         axes, cuts = [], []
+        spread = np.quantile(points, [0.01, 0.99], axis=0) if n else np.stack([low[0], high[0]])
+        scale = np.maximum(spread[1] - spread[0], _THINNEST)
         for _ in range(depth):
             least, most = cells.min(axis=1), cells.max(axis=1)
             if cells.shape[1] >= _CROWD:
                 margin = _MARGIN / cells.shape[1] * (most - least)
                 low, high = np.maximum(low, least - margin), np.minimum(high, most + margin)
-            axis = np.argmax(most - least, axis=1)
+            axis = np.argmax((most - least) / scale, axis=1)
             along = np.take_along_axis(cells, axis[:, None, None], axis=2)[:, :, 0]
             half = cells.shape[1] // 2
             order = np.argpartition(along, half, axis=1)

@@ -140,7 +140,7 @@ def runs_test(name: str, record: Succession, alpha: float) -> Finding:
         (p, correlation, z, f"{where}{f', channel {channel}' if len(record.large) > 1 else ''}")
         for way, where in enumerate(_WAYS)
         for channel in range(len(record.large))
-        for p, correlation, z in [_concordance(record, way, channel)]
+        for p, correlation, z in [concordance(record, way, channel)]
     ]
     p, correlation, z, where = min(found, key=lambda one: (one[0], -abs(one[1])))
     if all(one[2] == 0 for one in found):
@@ -152,7 +152,7 @@ def runs_test(name: str, record: Succession, alpha: float) -> Finding:
     return Finding(name, outcome, message, p, alpha, False, z, correlation, cause=cause)
 
 
-def _concordance(record: Succession, way: int, channel: int) -> tuple[float, float, float]:
+def concordance(record: Succession, way: int, channel: int) -> tuple[float, float, float]:
     """Return the p-value, the correlation and its z of one way to pair realisations; (1, 0, 0) where there is little to see."""
     pairs, both = int(record.pairs[way]), int(record.both[way, channel])
     share = int(record.large[channel]) / max(record.n, 1)

@@ -25,6 +25,8 @@ LARGEST_SHARE = 0.05  # of one sample in the sum of squares; beyond it the varia
 _ROUNDING = 16 * 2.0**-53  # relative: of values, and of their sum
 _LEAST = 8  # samples, below which none but declared facts tells anything
 _SHORT = 4.0  # standard deviations by which a sample's variance may fall short of the declared one
+DOUBT = 0.01
+"""A p-value below this that holds for every law, where the usual test could not be used, is no pass yet."""
 LAWLESS = 0.1  # share of alpha for declared facts, which hold whatever the law
 
 
@@ -189,6 +191,9 @@ def _lawless(
     if p <= alpha:
         message = f"{finding.message.partition(';')[0]}; decided by {known.words()}, whatever the law"
         return replace(finding, outcome="rejected", message=message, p_value=p, alpha=alpha, exact=False, effect=effect)
+    if finding.outcome == "inconclusive" and known.two_sided and p <= DOUBT:
+        message = f"{finding.message.partition(';')[0]}; {known.words()} leave that a probability of {p:.2g}: ask for more samples"
+        return replace(finding, message=message)
     if finding.outcome == "inconclusive" and known.bounded:
         reach = detectable(data.n, known, alpha, MISS) + error
         message = f"{finding.message.partition(';')[0]}; within {known.words()} chance explains it"

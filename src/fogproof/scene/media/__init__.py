@@ -3,8 +3,9 @@
 The homogeneous `Medium` is given by sigma_a and sigma_s, the others by sigma_t and the albedo sigma_s / sigma_t. A
 medium fills space; where a kind has bounds, there is vacuum outside. Positions are world coordinates [m].
 
-A kind has `channels`, `albedo`, `phase` and `emission`; `sources_vary` if the last may differ from place to place,
-`channel(c)` if one channel of it is more than that channel of each tuple, `lower` and `upper` if it ends.
+A kind has `channels`, `albedo`, `phase` and `emission`; `sources_vary` if albedo or emission may differ from place to place,
+`is_empty` if it can be vacuum everywhere, `channel(c)` if one channel of it is more than that channel of each tuple, `lower` and
+`upper` if it ends.
 """
 
 from __future__ import annotations
@@ -72,6 +73,11 @@ AnyMediumField = Annotated[AnyMedium, ByKind("fogproof.scene.media", default="ho
 def sources_vary(medium: AnyMedium) -> bool:
     """Return whether albedo or emission may differ from place to place."""
     return bool(getattr(medium, "sources_vary", False))
+
+
+def is_empty(medium: AnyMedium) -> bool:
+    """Return whether the medium is known to be vacuum everywhere."""
+    return bool(getattr(medium, "is_empty", False))
 
 
 def medium_of_channel(medium: AnyMedium, c: int) -> AnyMedium:

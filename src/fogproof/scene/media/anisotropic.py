@@ -46,6 +46,11 @@ class AnisotropicMedium:
         set_common(self)
 
     @property
+    def is_empty(self) -> bool:
+        """Whether there is vacuum everywhere."""
+        return not (np.any(self.sigma) and np.any(self.S))
+
+    @property
     def channels(self) -> int | None:
         """How many channels the medium has; None if it is grey."""
         return channels_with(self, sigma=self.sigma)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
 from fogproof.scene.arrays import FloatArray
 from fogproof.scene.media.common import channel_of, channels_with, row, set_common, set_vectors, vector_of
 from fogproof.scene.phase import AnyPhaseField, Isotropic
@@ -31,6 +33,11 @@ class ExponentialMedium:
         object.__setattr__(self, "sigma_0", nonnegative_channels("sigma_0", self.sigma_0, "1/m"))
         set_vectors(self, "rate", "1/m")
         set_common(self)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether there is vacuum everywhere."""
+        return not np.any(self.sigma_0)
 
     @property
     def channels(self) -> int | None:

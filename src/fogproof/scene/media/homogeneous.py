@@ -35,6 +35,11 @@ class Medium:
             require("sigma_t", self.sigma_t, np.isfinite(self.sigma_t), "= sigma_a + sigma_s must be finite [1/m]")
 
     @property
+    def is_empty(self) -> bool:
+        """Whether there is vacuum everywhere."""
+        return not np.any(self.sigma_t)
+
+    @property
     def channels(self) -> int | None:
         """How many channels the medium has; None if it is grey."""
         return channel_count(sigma_a=self.sigma_a, sigma_s=self.sigma_s, emission=self.emission)

@@ -40,6 +40,11 @@ class LinearMedium:
         set_common(self)
 
     @property
+    def is_empty(self) -> bool:
+        """Whether there is vacuum everywhere."""
+        return not np.any(np.greater(self.sigma_0, 0)) and not np.any(self.gradient)
+
+    @property
     def channels(self) -> int | None:
         """How many channels the medium has; None if it is grey."""
         return channels_with(self, sigma_0=self.sigma_0, gradient=row(self.gradient))

@@ -59,6 +59,11 @@ class OpenGLFog:
         _ = self.channels
 
     @property
+    def is_empty(self) -> bool:
+        """Whether there is vacuum everywhere."""
+        return self.mode != "linear" and self.density == 0
+
+    @property
     def channels(self) -> int | None:
         """How many channels the medium has; None if it is grey."""
         return channel_count(albedo=self.albedo, emission=self.emission)

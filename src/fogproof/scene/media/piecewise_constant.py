@@ -47,6 +47,11 @@ class PiecewiseConstantMedium:
         require_any_phase("phase", self.phase)
 
     @property
+    def is_empty(self) -> bool:
+        """Whether there is vacuum everywhere."""
+        return not np.any(self.sigma_t)
+
+    @property
     def channels(self) -> int | None:
         """How many channels the medium has; None if it is grey."""
         return cell_channels(self, 1)

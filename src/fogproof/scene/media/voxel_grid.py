@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal, get_args
 
+import numpy as np
+
 from fogproof.errors import InvalidValueError
 from fogproof.scene.arrays import FloatArray
 from fogproof.scene.media.common import cell_channels, cells_of_channel, cells_vary, set_cells
@@ -53,6 +55,11 @@ class VoxelGrid:
             raise InvalidValueError("interpolation", "must be 'nearest' or 'trilinear'", self.interpolation)
         set_cells(self, sigma_t.shape[:3], "one value a voxel")
         require_any_phase("phase", self.phase)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether there is vacuum everywhere."""
+        return not np.any(self.sigma_t)
 
     @property
     def channels(self) -> int | None:

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 
 from fogproof.analytic import single_scattering_variance
+from fogproof.capabilities import is_uniform
 from fogproof.contracts import Estimator, Reference
 from fogproof.errors import InvalidValueError
 from fogproof.estimators import Airlight, MarchedAirlight
-from fogproof.scene import Medium, PointLight
+from fogproof.scene import PointLight
 from fogproof.scene.lights import Light as AnyLight
 
 if TYPE_CHECKING:
@@ -55,12 +56,12 @@ class Light:
 
     def variance(self, scene: StudyScene) -> Reference | None:
         """Return it for a point light in a homogeneous medium."""
-        plain = isinstance(scene.matter, Medium) and isinstance(scene.light, PointLight) and not scene.occluders
+        medium: Any = scene.matter
+        plain = is_uniform(medium) and isinstance(scene.light, PointLight) and not scene.occluders
         if not plain or self.shadow_rays != "exact":
             return None
-        assert isinstance(scene.matter, Medium)
         assert isinstance(scene.light, PointLight)
-        return single_scattering_variance(scene.matter, scene.ray, scene.light, self.placing)
+        return single_scattering_variance(medium, scene.ray, scene.light, self.placing)
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from fogproof.analytic import ball_radiance
+from fogproof.analytic.media.coefficients import is_uniform
 from fogproof.contracts import Estimator, Reference
 from fogproof.errors import InvalidValueError, UnsupportedError
 from fogproof.estimators import PathTracer
 from fogproof.estimators.paths.tracer import LightSampling
-from fogproof.scene import Isotropic, Medium
+from fogproof.scene import Isotropic
 from fogproof.scene.lights import Environment
 from fogproof.scene.shapes import Ball
 
@@ -32,7 +33,7 @@ def radiance_of_ball(scene: StudyScene) -> Reference:
     if not isinstance(shape, Ball) or not isinstance(light, Environment):
         what = "the radiance of all orders is known of a ball in an environment"
         raise InvalidValueError("shape", f"must be a ball, and the light an environment: {what}", shape)
-    if not isinstance(medium, Medium) or not isinstance(medium.phase, Isotropic) or np.any(medium.emission):
+    if not is_uniform(medium) or not isinstance(medium.phase, Isotropic) or np.any(medium.emission):
         raise UnsupportedError("the ball must be homogeneous, scatter isotropically and emit nothing", "medium")
     out = ray.origin - np.asarray(shape.center)
     along = float(out @ ray.direction)

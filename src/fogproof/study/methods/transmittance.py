@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 
 from fogproof.analytic import transmittance_variance
+from fogproof.capabilities import has_cells
 from fogproof.contracts import Draws, Estimator, Reference
 from fogproof.errors import UnsupportedError
 from fogproof.estimators import (
@@ -51,9 +52,10 @@ class Regular:
 
     def make(self, scene: StudyScene, count: int) -> Estimator:
         """Return the estimator."""
-        if not isinstance(scene.matter, VoxelGrid):
+        if not has_cells(scene.matter):
             raise UnsupportedError(f"regular tracking needs a VoxelGrid, got {type(scene.matter).__name__}", "medium")
-        return _Walks(scene.matter, scene.ray)
+        grid: Any = scene.matter
+        return _Walks(grid, scene.ray)
 
     def variance(self, scene: StudyScene) -> Reference | None:
         """Return 0."""
@@ -142,7 +144,7 @@ class ResidualRatio:
 
     def variance(self, scene: StudyScene) -> Reference | None:
         """Return T^2 (exp(integral of (sigma_t - control)^2 / residual majorant) - 1); a grid's control ends with the grid."""
-        if isinstance(scene.matter, VoxelGrid):
+        if has_cells(scene.matter):
             return None
         low, high = _bounds(scene)
         high = self.majorant or high

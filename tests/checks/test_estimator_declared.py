@@ -1,0 +1,181 @@
+"""What is declared decides whatever the law; what is not declared is never relied on, and every scale is as good as another."""
+
+import numpy as np
+import pytest
+
+from fogproof import Draws, Reference, check_estimator, compare_estimators, samples_for
+from fogproof.errors import InvalidValueError, SubjectError
+
+
+def constant(value):
+    return lambda rng, n: np.full(n, value)
+
+
+def far(rng, n):
+    return 1000 + rng.normal(size=n)
+
+
+DECIDED = [
+    ("black pixel", constant(0.0), 0.3, {}, "inconclusive", "bounds="),
+    ("black pixel, its variance", constant(0.0), 0.3, {"variance": 0.1}, "rejected", "variance 0.1"),
+    ("black pixel, its bounds", constant(0.0), 0.3, {"bounds": (0, 1)}, "rejected", "bounds (0, 1)"),
+    ("black pixel, a few of it", constant(0.0), 0.3, {"bounds": (0, 1), "samples": 20}, "inconclusive", "ask for more"),
+    ("black pixel, rare light", constant(0.0), 1e-6, {"bounds": (0, 1)}, "not rejected", "chance"),
+    ("too bright", constant(0.6), 0.3, {"nonnegative": True}, "rejected", "bounds (0, inf)"),
+    ("too bright, undeclared", constant(0.6), 0.3, {}, "rejected", "no value is negative"),
+    ("too bright, too few", constant(0.6), 0.3, {"samples": 15}, "inconclusive", "bounds="),
+    ("too dark, not negative", constant(0.2), 0.3, {"nonnegative": True}, "inconclusive", "bounds="),
+    ("far off, a hundred", far, 0.0, {"samples": 100, "bounds": (-2e3, 2e3)}, "rejected", "whatever the law"),
+    ("far off, bounds too wide to tell", far, 0.0, {"samples": 100, "bounds": (-1e4, 1e4)}, "inconclusive", "ask for more"),
+    ("far off, thirty, light tails", far, 0.0, {"samples": 30, "tails": "light"}, "rejected", "light"),
+    ("right, thirty, light tails", far, 1000.0, {"samples": 30, "tails": "light"}, "not rejected", "light"),
+    ("far off, thirty, signed", lambda rng, n: far(rng, n) * -1, 0.0, {"samples": 30}, "inconclusive", "unseen in 30"),
+    ("outside its bounds", lambda rng, n: rng.normal(0.5, 0.2, n), 0.5, {"bounds": (0, 1)}, "rejected", ""),
+    ("tolerance", constant(0.3003), 0.3, {"tolerance": 2e-3, "variance": 0}, "not rejected", "+- 0.0006"),
+    ("less tolerance", constant(0.3003), 0.3, {"tolerance": (1e-4, 1e-4), "variance": 0}, "rejected", ""),
+    ("float32", lambda rng, n: np.full(n, 0.1, np.float32), 0.1, {"precision": "float32", "variance": 0}, "not rejected", ""),
+    ("known too coarsely", constant(0.0), Reference(1e-33, 3e-33), {}, "inconclusive", "coarsely"),
+    ("noise about nothing", lambda rng, n: rng.normal(size=n), Reference(0.0, 1e-16), {}, "not rejected", ""),
+    ("constant cost", lambda rng, n: Draws(rng.random(n), np.full(n, 48.0)), 0.5, {"cost": 12.0}, "rejected", ""),
+    ("constant cost, too small", lambda rng, n: Draws(rng.random(n), np.full(n, 6.0)), 0.5, {"cost": 12.0}, "rejected", ""),
+    ("rounding is no scatter", lambda rng, n: 0.1 + rng.choice([0, 1e-17, 3e-17], n), 0.1, {}, "not rejected", ""),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("name", "draw", "reference", "options", "outcome", "words"), DECIDED, ids=[c[0] for c in DECIDED]
+)
+def test_what_is_declared_decides(name, draw, reference, options, outcome, words):
+    verdict = check_estimator(draw, reference, **{"samples": 50_000, **options})
+    assert verdict.outcome == outcome, str(verdict)
+    assert words in " ".join(f.message for f in verdict.findings)
+
+
+@pytest.mark.parametrize("scale", [1e-300, 1e-131, 1e-20, 1e150, 1e300])
+def test_every_scale_is_judged_alike(scale):
+    def draw(rng, n):
+        return scale * rng.exponential(size=n)
+
+    def reported(rng, n):
+        x = scale * rng.normal(3, 1, size=(n, 20))
+        return Draws(x.mean(axis=1), stderr=(x / scale).std(axis=1, ddof=1) * (scale / np.sqrt(20)))
+
+    with np.errstate(over="raise"):
+        assert check_estimator(draw, scale, samples=50_000).outcome == "not rejected"
+    wrong = check_estimator(draw, 1.1 * scale, samples=50_000)
+    assert wrong.outcome == "rejected", str(wrong)
+    assert check_estimator(reported, 3 * scale, samples=20_000).outcome == "not rejected"
+    assert compare_estimators(draw, draw, samples=50_000).outcome == "not rejected"
+    assert compare_estimators(draw, lambda rng, n: 1.1 * draw(rng, n), samples=50_000).outcome == "rejected"
+
+
+def test_rare_bright_values_are_no_error_where_their_variance_is_declared():
+    def draw(rng, n):
+        return rng.normal(1, 0.1, n) + (rng.random(n) < 1e-5) * 1e3
+
+    for _ in range(8):
+        verdict = check_estimator(draw, 1.01, variance=0.01 + 1e-5 * (1 - 1e-5) * 1e6, samples=100_000)
+        assert verdict.outcome != "rejected", str(verdict)
+        assert verdict.samples == 100_000
+
+
+def test_a_finite_set_is_judged_as_it_is_and_nothing_is_drawn_twice():
+    pixels = np.random.default_rng().exponential(size=(70_000, 3)) * [1, 2, 3]
+    verdict = check_estimator(pixels, [1, 2, 3])
+    assert verdict.outcome == "not rejected", str(verdict)
+    assert verdict.samples == 70_000
+    assert check_estimator(Draws(pixels[:, 0], cost=np.full(70_000, 2.0)), 1.0, cost=2.0).outcome == "not rejected"
+    assert check_estimator(pixels[:, 0], 1.1).outcome == "rejected"
+    with pytest.raises(SubjectError, match=r"reshape\(-1, 3\)"):
+        check_estimator(np.zeros((4, 4, 3)), [1, 2, 3])
+
+
+@pytest.mark.parametrize(("samples", "most"), [(30, 1), (900, 1), (5000, 2), (65536, 2), (1_000_000, 21)])
+def test_a_renderer_is_not_asked_often(samples, most):
+    asked = []
+
+    def draw(rng, n):
+        asked.append(n)
+        return rng.lognormal(0, 2, n)
+
+    check_estimator(draw, np.exp(2), samples=samples)
+    assert len(asked) <= most
+    assert sum(asked) == samples
+
+
+def test_a_resolution_ends_the_check():
+    quick = check_estimator(lambda rng, n: rng.normal(2, 1, n), 2.0, resolution=0.1)
+    assert quick.outcome == "not rejected", str(quick)
+    assert quick.samples < 20_000
+    assert quick.resolution.value <= 0.1
+    assert check_estimator(lambda rng, n: rng.normal(2.1, 1, n), 2.0, resolution=0.1).outcome == "rejected"
+    coarse = check_estimator(lambda rng, n: rng.normal(2, 1, n), 2.0, resolution=1e-3, samples=10_000)
+    assert coarse.outcome == "inconclusive"
+    assert "ask for about" in str(coarse)
+
+
+def test_orders_without_a_reference_are_counted():
+    def draw(rng, n):
+        return Draws(rng.exponential(size=n), order=rng.integers(0, 4, n))
+
+    verdict = check_estimator(draw, {0: 0.25, 1: 0.25}, samples=20_000)
+    other = next(f for f in verdict.findings if f.check == "other orders")
+    assert "(2, 3)" in other.message
+    assert other.effect == pytest.approx(0.5, abs=0.05)
+
+
+def test_the_plan_is_kept():
+    n = samples_for(bias=0.02, variance=0.25)
+    outcomes = [check_estimator(lambda rng, m: rng.normal(0.52, 0.5, m), 0.5, samples=n).outcome for _ in range(60)]
+    assert outcomes.count("rejected") >= 54  # fewer with probability 3e-6
+    n = samples_for(bias=0.02, probability=0.1)
+    outcomes = [check_estimator(lambda rng, m: (rng.random(m) < 0.08) * 1.0, 0.1, samples=n).outcome for _ in range(60)]
+    assert outcomes.count("rejected") >= 54
+    assert samples_for(bias=0.02, variance=0.25) < samples_for(bias=0.02, variance=0.25, false_fail=1e-9)
+    assert samples_for(bias=0.02, bounds=(0, 1)) > samples_for(bias=0.02, variance=0.25)
+    with pytest.raises(InvalidValueError, match="one of them"):
+        samples_for(bias=0.02)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"bounds": (1, 0)}, "low < high"),
+        ({"bounds": (0, 0.4)}, "within the declared bounds"),
+        ({"tails": "thin"}, "light"),
+        ({"tolerance": -1}, "tolerance"),
+        ({"precision": "half"}, "float32"),
+        ({"samples": 1.5}, "whole number"),
+        ({"samples": 1}, ">= 2"),
+        ({"seed": -1}, "seed"),
+        ({"alpha": 1e-320}, "alpha"),
+        ({"resolution": 0}, "resolution"),
+    ],
+)
+def test_wrong_arguments_are_explained(options, words):
+    with pytest.raises(InvalidValueError, match=words):
+        check_estimator(lambda rng, n: rng.random(n), 0.5, **options)
+
+
+class Foreign:
+    def __init__(self, x):
+        self.x = x
+
+    def __dlpack__(self, **options):
+        return self.x.__dlpack__(**options)
+
+    def __dlpack_device__(self):
+        return self.x.__dlpack_device__()
+
+
+def test_arrays_of_others_are_read_or_refused_with_the_fix():
+    def refused(draw, words, reference=0.5):
+        with pytest.raises(SubjectError, match=words):
+            check_estimator(draw, reference, samples=1e3)
+
+    assert check_estimator(lambda rng, n: Foreign(rng.random(n)), 0.5, samples=1e4).outcome == "not rejected"
+    assert check_estimator(lambda rng, n: rng.random((n, 1)), 0.5, samples=1e4).outcome == "not rejected"
+    refused(lambda rng, n: rng.random(n).astype(np.float32), 'precision="float32"')
+    refused(lambda rng, n: np.ma.masked_less(rng.random(n), 0.5), "masked")
+    refused(lambda rng, n: rng.random((3, n)), "transpose", [0.5, 0.5, 0.5])
+    refused(lambda rng, n: rng.random((n, 3)), "one value a channel")
