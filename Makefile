@@ -8,7 +8,7 @@ BIN    := $(VENV)/bin
 export OPENBLAS_NUM_THREADS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help verify gallery study test lint format calibrate repeat oracle-docs fuzz-oracle oracle-hard kill-study golden bench clean
+.PHONY: help verify gallery study test lint format calibrate field-bugs repeat oracle-docs fuzz-oracle oracle-hard kill-study golden bench clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -34,6 +34,9 @@ format: $(VENV)/.installed-lint  ## let ruff rewrite what it can
 
 calibrate: $(VENV)/.installed-test  ## how often the checks reject what is right; an hour, rewrites docs/calibration.md
 	$(BIN)/python tools/calibrate.py
+
+field-bugs: $(VENV)/.installed-test  ## bugs that shipped elsewhere, planted: rejected, and their cause named
+	$(BIN)/python tools/field_bugs
 
 repeat: $(VENV)/.installed-test  ## 20 runs of the catalogue with fresh seeds: no false alarm
 	$(BIN)/python tools/repeat_verify.py

@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from calibrate_estimators import section
 
 from fogproof.checks import (
     Finding,
@@ -343,12 +344,13 @@ def main() -> None:
         f"Verdicts of {arguments.samples} samples on {len(SUBJECTS)} samplers and five estimators; seed {seed};"
         f" NumPy {np.__version__}, Python {platform.python_version()}."
     )
-    text = page(tally, wholes, settings)
+    part, kept = section(min(arguments.verdicts, 2000), arguments.samples, _seed(streams))
+    text = f"{page(tally, wholes, settings)}\n{part}"
     arguments.page.parent.mkdir(parents=True, exist_ok=True)
     arguments.page.write_text(text)
     print(text)
     failed = [key for key, outcomes in wholes.items() if set(outcomes) - {"not rejected"}]
-    sys.exit(1 if failed or outside(tally) else 0)
+    sys.exit(1 if failed or outside(tally) or not kept else 0)
 
 
 if __name__ == "__main__":

@@ -143,7 +143,7 @@ def _first(medium: AnyMedium, ray: Ray) -> tuple[np.ndarray, np.ndarray, np.ndar
     which, column = np.nonzero(widths > 0)
     start, width = edges[which, column], widths[which, column]
     detail = getattr(medium, "detail", np.inf)
-    pieces = 1 if given(medium, ROOM, "thickness") else FIRST
+    pieces = FIRST if given(medium, ROOM, "thickness") is None or hasattr(medium, "detail") else 1
     parts = np.maximum(pieces, np.ceil(width / detail)).astype(int)
     owner = np.repeat(np.arange(len(parts)), parts)
     step = np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts)

@@ -7,10 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from fogproof.analytic.geometry.rays import Thickness
+from fogproof.analytic.media.adaptive import thickness_by_quadrature
+from fogproof.analytic.media.breakpoints import extent
 from fogproof.analytic.media.coefficients import Coefficients, Points, by_albedo
 from fogproof.analytic.proven.pieces import Piece
 from fogproof.errors import InvalidValueError, UnsupportedError
-from fogproof.scene import Procedural
+from fogproof.scene import Procedural, Ray
 from fogproof.validate import as_float_array, require
 
 
@@ -49,6 +52,21 @@ def _checked(
         good |= ~inside if len(shape) == inside.ndim else ~inside[..., None]
     require(name, array, good, rule)
     return array
+
+
+def thickness(medium: Procedural, ray: Ray, channels: int | None) -> Thickness:
+    """Return tau by quadrature.
+
+    Without a `detail` nobody knows what lies between the nodes. If all of them saw vacuum, that says nothing: the error is then
+    what the majorant allows.
+    """
+    found = thickness_by_quadrature(medium, ray, channels)
+    if np.isfinite(medium.detail):
+        return found
+    enter, leave, _ = extent(medium, ray)
+    most = medium.majorant * (leave - enter).reshape(ray.shape)
+    most = np.broadcast_to(most if channels is None else most[..., None], found.value.shape)
+    return found._replace(error=np.where(found.value == 0, most + found.error, found.error))
 
 
 def squared(medium: Procedural) -> Procedural:

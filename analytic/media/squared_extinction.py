@@ -73,7 +73,7 @@ def by_panels(medium: AnyMedium, ray: Ray, channels: int | None) -> Integral:
         width, t = width[..., None], t[..., None]
     weights = WEIGHTS if channels is None else WEIGHTS[:, None]
     terms = width * weights * sigma**2
-    place = 4 * EPS * (np.abs(origin).max() + np.abs(t).max(initial=0.0))
+    place = 4 * EPS * (np.abs(origin).max(initial=0.0) + np.abs(t).max(initial=0.0))
     axes = (1, 2)
     moved = np.abs(np.diff(np.square(sigma), axis=2)).sum(axis=axes) + np.square(sigma).max(axis=axes, initial=0.0)
     shape = ray.shape if channels is None else (*ray.shape, channels)

@@ -24,6 +24,9 @@ from fogproof.scene.arrays import Count, FloatArray
 from fogproof.validate import as_float_array, require
 
 METHOD = "closed form"
+CIRCLES = (1.0, 0.5, 0.2, 0.05, 0.01, 1e-3)
+"""Radii from which scattering orders are taken, as shares of the largest."""
+
 SOURCE = "Schuster 1905, Radiation through a foggy atmosphere"
 
 
@@ -78,8 +81,10 @@ def rod_reflectance_orders(length: FloatArray, count: Count, g: FloatArray = 0.0
     return taylor_coefficients(
         lambda c: _reflectance(c, 1 - c, L[..., None], g[..., None]),
         checked_count("count", count),
-        known=lambda c: rod_reflectance(c, L, g),
+        known=lambda c: _known(_reflectance, c, L, g),
         source=SOURCE,
+        shares=CIRCLES,
+        growth=_collides_again(L),
     )
 
 
@@ -100,8 +105,10 @@ def rod_transmittance_orders(length: FloatArray, count: Count, g: FloatArray = 0
     return taylor_coefficients(
         lambda c: _transmittance(c, 1 - c, L[..., None], g[..., None]),
         checked_count("count", count),
-        known=lambda c: rod_transmittance(c, L, g),
+        known=lambda c: _known(_transmittance, c, L, g),
         source=SOURCE,
+        shares=CIRCLES,
+        growth=_collides_again(L),
     )
 
 
@@ -110,6 +117,18 @@ def _checked(albedo: Any, length: Any, g: Any) -> tuple[np.ndarray, np.ndarray, 
     require("g", g, np.abs(g) <= 1, "must lie in [-1, 1]", "it is the mean cosine")
     arrays = np.broadcast_arrays(c, L, g)
     return arrays[0], arrays[1], arrays[2]
+
+
+def _collides_again(L: np.ndarray) -> float:
+    """Return the chance at most that light in a rod collides once more: that of crossing all of it."""
+    return float(-np.expm1(-np.max(L, initial=1e-3)))
+
+
+def _known(function: Any, c: float, L: np.ndarray, g: np.ndarray) -> Reference:
+    """Return a formula at an albedo that may exceed 1, below the one at which a rod would glow by itself, and its error."""
+    value = np.real(function(np.asarray(c, complex), 1 - c, L, g))
+    depth = np.sqrt(np.abs((1 - c) * (1 - c * g))) * L
+    return Reference(value, (32 + 8 * depth) * EPS * np.abs(value), METHOD, SOURCE)
 
 
 def _kept(c: Any, absorbed: Any, g: np.ndarray) -> Any:

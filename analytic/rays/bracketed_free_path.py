@@ -60,7 +60,7 @@ def _up_to(
     origin, direction = ray.origin.reshape(-1, 3)[rows], ray.direction.reshape(-1, 3)[rows]
     found = thickness(medium, Ray(origin, direction, np.maximum(t, TINY)), channels)
     own = np.arange(len(rows)), np.arange(len(rows)) % (channels or 1)
-    value, low, error = (x.reshape(len(rows), -1)[own] for x in (found.value, found.low, found.error))
+    value, low, error = (x.reshape(len(rows), channels or 1)[own] for x in (found.value, found.low, found.error))
     endless = np.isinf(value)
     value, error = np.where(endless, value, value + low), np.where(endless, error, error + EPS * value)
     return np.where(t > 0, value, 0.0), np.where(t > 0, error, 0.0)

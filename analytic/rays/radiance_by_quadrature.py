@@ -9,6 +9,7 @@ from fogproof.analytic.declaration import RADIANCE, RAY, quantity
 from fogproof.analytic.geometry.rays import channels_of
 from fogproof.analytic.media.adaptive import SOURCE, SourceTerm, integrate_along
 from fogproof.contracts import Reference
+from fogproof.errors import UnsupportedError
 from fogproof.scene import Ray
 from fogproof.scene.arrays import ChannelArray
 from fogproof.scene.media import AnyMediumField
@@ -53,6 +54,8 @@ def radiance_by_quadrature(
         value = along.gain + survived * background
         error = along.gain_error + survived * background * (np.expm1(along.tau_error) + ELEMENTARY) + EPS * value
         error = error + 4 * TINY * (1 + np.add(background, 0.0))
+    if np.isnan(value).any():
+        raise UnsupportedError("the extinction exceeds the largest float64 somewhere on the ray", "medium")
     shape = ray.shape if channels is None else (*ray.shape, channels)
     return Reference(value.reshape(shape), error.reshape(shape), "adaptive Gauss-Legendre 16", SOURCE)
 

@@ -45,6 +45,7 @@ if TYPE_CHECKING:
         compare_estimators,
         samples_for,
     )
+    from fogproof.runs import Run
     from fogproof.scene.files import read_scene
     from fogproof.scene.volume_files import read_voxel_grid
     from fogproof.scene_estimator import estimator_for
@@ -74,6 +75,7 @@ __all__ = [
     "Rectangle",
     "Reference",
     "Rotations",
+    "Run",
     "Sampler",
     "Scene",
     "SpherePart",
@@ -110,6 +112,7 @@ _LAZY = {
     "samples_for": "fogproof.checks",
     "Verdict": "fogproof.checks",
     "Finding": "fogproof.checks",
+    "Run": "fogproof.runs",
     "estimator_for": "fogproof.scene_estimator",
     "read_scene": "fogproof.scene.files",
     "read_voxel_grid": "fogproof.scene.volume_files",

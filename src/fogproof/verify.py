@@ -192,7 +192,7 @@ def record(
             "schema": SCHEMA,
             "kind": "verify",
             "fogproof": importlib.metadata.version("fogproof"),
-            "environment": _environment(),
+            "environment": environment(),
             "command": command,
             "seed": seed,
             "alpha": alpha,
@@ -243,7 +243,8 @@ def _plan(case: Case) -> dict[str, Any] | None:
         return None
 
 
-def _environment() -> dict[str, Any]:
+def environment() -> dict[str, Any]:
+    """Return the versions and the machine that a record names."""
     versions = {"python": platform.python_version(), "numpy": np.__version__}
     for package in ("scipy", "mitsuba"):
         try:

@@ -14,7 +14,11 @@ HEAVY = ["numba", "scipy", "scipy.stats", "matplotlib", "pydantic", "colour", "c
 
 
 def test_every_package_folder_is_listed():
-    homes = {"fogproof": "src/fogproof", **{f"fogproof.{name}": name for name in ("analytic", "estimators", "reports")}}
+    homes = {
+        "fogproof": "src/fogproof",
+        "fogproof_pytest": "src/fogproof_pytest",
+        **{f"fogproof.{name}": name for name in ("analytic", "estimators", "reports")},
+    }
     folders = {
         ".".join((package, *Path(folder).relative_to(ROOT / home).parts))
         for package, home in homes.items()

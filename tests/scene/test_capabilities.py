@@ -41,6 +41,7 @@ from fogproof.scene.lights.disk import DiskLight
 from fogproof.scene.lights.rectangle import RectangleLight
 from fogproof.scene.lights.sphere import SphereLight
 from fogproof.scene.media import FROM_PYTHON, KINDS
+from fogproof.scene.media.gaussian_puffs import GaussianPuffs
 from fogproof.scene_estimator import estimator_for
 
 EYE = (0.1, 0.2, 0.0)
@@ -74,6 +75,7 @@ MEDIA = {
     "unlike voxels": VoxelGrid(CELLS, (0, 0, 0), (1, 1, 2), albedo=CELLS / 2, emission=CELLS),
     "function": Procedural(smooth, 1.0, detail=0.5, **SAME),
     "function in a box": Procedural(smooth, 1.0, lower=(0, 0, 0), upper=(1, 1, 2), detail=0.5, albedo=0.6, phase=BLEND),
+    "puffs": GaussianPuffs([(0, 0.1, 1), (0.5, -0.2, 2)], [0.3, 0.7], [2.0, 0.8], **SAME),
     "unlike function": Procedural(smooth, 1.0, detail=0.5, **VARYING),
 }
 LIGHTS = {

@@ -32,4 +32,6 @@ def few_values(name: str, subject: Subject, axis: str, pilot: np.ndarray, points
     moves = [np.abs(coordinate(moved) - coordinate(shown)) for moved in nudged(shown, subject.roundoff)]
     moves = [np.minimum(move, 1 - move) for move in moves]
     rounding = float(np.median(np.max(moves, axis=0))) if len(shown) else 0.0
-    return coarse_test(name, axis, coordinate(points), rounding + 4 * subject.roundoff, subject.bits, alpha)
+    if subject.precision == "float32":  # its cosines may have been rounded before they became points
+        rounding += 4 * subject.roundoff
+    return coarse_test(name, axis, coordinate(points), rounding, subject.bits, alpha)

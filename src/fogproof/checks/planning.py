@@ -72,15 +72,10 @@ def samples_for(
     if whatever_the_law:
         return _smallest(lambda n: Bets(0.0, 0.0, Known(v), n, bets).detectable(false_pass), bias)
 
-    from scipy.special import gammaincinv
-
     def reach(n: int) -> float:
-        if n >= _FEW:
-            quantiles = normal_quantile(usual / 2) + normal_quantile(false_pass)
-        else:  # the standard error of few is measured, too, and may be an unlucky one
-            unlucky = math.sqrt(gammaincinv(0.5 * (n - 1), 1 - 0.5 * false_pass) / (0.5 * (n - 1)))
-            quantiles = light_tailed_reach(n, usual, 0.5) * unlucky + normal_quantile(0.5 * false_pass)
-        return quantiles * math.sqrt(v / n)
+        few = n < _FEW
+        both = normal_quantile(usual / 2) + normal_quantile(false_pass)
+        return (light_tailed_reach(n, usual, false_pass) if few else both) * math.sqrt(v / n)
 
     return _smallest(reach, bias)
 

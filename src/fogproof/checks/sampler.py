@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from fogproof.checks.declared import declared, unchecked
-from fogproof.checks.diagnosis import likely_cause, mirrored
+from fogproof.checks.diagnosis import diagnosed
 from fogproof.checks.escalation import EARLY, Stage, doubtful, judged, stages, total_weight
 from fogproof.checks.figures import bins_figure, z_map_figure
 from fogproof.checks.prepared import Prepared, prepare
@@ -30,7 +30,7 @@ from fogproof.checks.suite import tests_of
 from fogproof.checks.tally import Tally
 from fogproof.checks.verdict import Finding, Verdict
 from fogproof.contracts import Reference
-from fogproof.domains import Domain, UnitSphere
+from fogproof.domains import Domain
 
 
 def check_sampler(
@@ -191,6 +191,7 @@ class SamplerCheck:
         )
         seconds = time.perf_counter() - self.started
         pilot = self.prepared.pilot
+        cause, diagnosis = diagnosed(subject, findings, tally.drawn, self.seed)
         return Verdict(
             tuple(findings),
             self.alpha,
@@ -198,8 +199,9 @@ class SamplerCheck:
             self.seed,
             seconds,
             settings,
-            likely_cause(findings),
+            cause,
             reproduce,
+            diagnosis=diagnosis,
             unchecked=unchecked(subject, pilot.channels, bool(pilot.labels)),
         )
 
@@ -208,10 +210,6 @@ def judge(prepared: Prepared, tally: Tally, alpha: float, final: bool = True) ->
     """Return all findings about the samples so far; the statistical ones share alpha."""
     findings = [prepared.normalisation(tally), *prepared.findings, *tally.watch.findings()]
     statistical = judged(tests_of(prepared, tally), alpha, final)
-    rejected = any(f.outcome == "rejected" for f in statistical)
-    sphere = isinstance(prepared.subject.domain, UnitSphere) and prepared.subject.cdf is None and prepared.counted
-    if rejected and sphere and mirrored(prepared.grid.marginals[0], tally.fine[0]):
-        statistical = [f.because("sign convention") if f.cause else f for f in statistical]
     return findings + _illustrated(prepared, tally, statistical)
 
 

@@ -165,7 +165,7 @@ class Verdict:
     def __str__(self) -> str:
         lines = [f"{self.outcome} (alpha {self.alpha:g}, {self.samples} samples, seed {self.seed})"]
         if self.cause:
-            lines.append(f"  likely: {self.cause}")
+            lines.append(f"  likely: {self.cause}" + (f"; {self.diagnosis}" if self.diagnosis else ""))
         lines += [f"  {f.outcome:12}  {_told(f)}" for f in self.findings if f.outcome == "rejected"]
         lines += [f"  {f.outcome:12}  {_told(f)}" for f in self.findings if f.outcome == "inconclusive"]
         passed = [f.check for f in self.findings if f.outcome == "not rejected"]
@@ -178,6 +178,7 @@ class Verdict:
         ]
         if allowed:
             lines.append(f"  declared: {', '.join(allowed)}")
+        lines += [f"  unchecked: {what}" for what in self.unchecked]
         if self.outcome != "not rejected" and self.reproduce:
             lines.append(f"  reproduce: {self.reproduce}")
         return "\n".join(lines)

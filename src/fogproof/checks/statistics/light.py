@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from fogproof.checks.statistics.tails import student_two_sided
+from fogproof.checks.statistics.tails import normal_quantile, student_two_sided
 
 _FEW = 1000
 _SAMPLE = 4000
@@ -34,9 +34,9 @@ def light_tailed_p(n: int, z: float) -> float:
 def light_tailed_reach(n: int, alpha: float, miss: float = 0.01) -> float:
     """Return the bias, in standard errors, that is found but for the probability `miss`; inf if none is.
 
-    The critical value by bisection, and as much again as chance takes away: Student's quantile, which few realisations make large.
+    The critical value by bisection, for a standard error that is unluckily large, and as much again as chance takes from the mean.
     """
-    from scipy.special import stdtrit
+    from scipy.special import gammaincinv
 
     low, high = 1.0, 1e9
     if n < 2 or light_tailed_p(n, high) > alpha:
@@ -44,7 +44,8 @@ def light_tailed_reach(n: int, alpha: float, miss: float = 0.01) -> float:
     while high > low * (1 + 1e-6):
         middle = math.sqrt(low * high)
         low, high = (middle, high) if light_tailed_p(n, middle) > alpha else (low, middle)
-    return high - float(stdtrit(n - 1, miss))
+    unlucky = math.sqrt(float(gammaincinv(0.5 * (n - 1), 1 - 0.5 * miss)) / (0.5 * (n - 1)))
+    return high * unlucky + normal_quantile(0.5 * miss)
 
 
 @functools.lru_cache(maxsize=16)

@@ -23,7 +23,7 @@ from fogproof.checks.verdict import Finding, Interval, Outcome, Resolution
 LARGEST_CORRECTION = 1.0  # of the exponent |skewness| z^3 / (3 sqrt n); beyond it the expansion is not trusted
 LARGEST_SHARE = 0.05  # of one sample in the sum of squares; beyond it the variance itself may be infinite
 _ROUNDING = 16 * 2.0**-53  # relative: of values, and of their sum
-_LEAST = 8  # samples, below which none but declared facts tells anything
+_LEAST = 100  # samples, below which none but declared facts tells anything
 _SHORT = 4.0  # standard deviations by which a sample's variance may fall short of the declared one
 DOUBT = 0.01
 """A p-value below this that holds for every law, where the usual test could not be used, is no pass yet."""
@@ -148,13 +148,14 @@ def _student(
     name: str, what: str, data: Moments, reference: float, error: float, alpha: float, known: Known
 ) -> Finding:
     gap = max(abs(data.mean - reference) - error - _ROUNDING * max(abs(data.mean), abs(reference)), 0.0)
-    z = gap / data.stderr
+    stderr = max(data.stderr, math.ulp(0.0))  # of denormal numbers it may vanish
+    z = gap / stderr
     needed = normal_quantile(alpha / 2)
     growth = abs(data.skewness) / (3 * math.sqrt(data.n))
     effect = data.mean - reference
     message = f"{what} {data.mean:.7g} +- {data.stderr:.2g}, reference {reference:.7g}"
-    if math.isfinite(effect / data.stderr):
-        message += f" (z = {effect / data.stderr:+.2f})"
+    if math.isfinite(effect / stderr):
+        message += f" (z = {effect / stderr:+.2f})"
     light = known.light and data.n > 1 and not short_of_variance(data, known)
     if not (light or trusted(data, alpha, known)):
         message += _why_not(data, alpha, known, growth * needed**3, effect, error)
@@ -172,14 +173,19 @@ def _student(
 def _why_not(data: Moments, alpha: float, known: Known, exponent: float, effect: float, error: float) -> str:
     if short_of_variance(data, known):
         return f"; the sample varies by {data.deviation:.3g}, less than the declared {known.deviation:.3g}: rare values are missing"
+    if data.n < _LEAST:
+        said = f"; {data.n} are too few to know their law: ask for {_LEAST} at least"
+        return said + _declare(known) + unseen(data, effect, error, alpha)
     enough = math.ceil(data.n * max(exponent / LARGEST_CORRECTION, 1) ** 2)
     said = (
         f"; too skewed for a test at alpha = {alpha:.1g} (skewness {data.skewness:.3g}, the largest sample has"
         f" {data.largest_share:.1%} of the variance): ask for about {max(enough, 4 * data.n)} samples"
     )
-    if not known.two_sided:
-        said += ', or declare bounds=(low, high), the exact variance=, or tails="light"'
-    return said + unseen(data, effect, error, alpha)
+    return said + _declare(known) + unseen(data, effect, error, alpha)
+
+
+def _declare(known: Known) -> str:
+    return "" if known.two_sided else ', or declare bounds=(low, high), the exact variance=, or tails="light"'
 
 
 def _lawless(

@@ -136,9 +136,10 @@ def _kind_of_repetition(prints: np.ndarray) -> tuple[str, str]:
         far = int(distances[np.argmax(times)])
         where = "right after the first time" if far == 1 else f"{far} points later"
         return f"a share of {times.max() / n:.2g} comes again {where}", "repeated samples"
-    if counts.mean() > 1.5 or counts.max() < 4:
+    several = int(np.count_nonzero(counts > 1))
+    if counts.mean() > 1.5 or extra < 2 * several:
         return f"there are {len(values)} different points among {n}: numbers of few bits", "coarse numbers"
-    return f"{int(np.count_nonzero(counts > 1))} different points come more than once", "repeated samples"
+    return f"{several} points come {extra / several + 1:.2g} times on average", "atom"
 
 
 def coarse_test(name: str, label: str, t: np.ndarray, rounding: float, bits: int, alpha: float) -> Finding:

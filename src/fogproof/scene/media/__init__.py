@@ -19,6 +19,7 @@ from fogproof.scene.kinds import ByKind
 from fogproof.scene.media.anisotropic import AnisotropicMedium
 from fogproof.scene.media.common import channel_of
 from fogproof.scene.media.exponential import ExponentialMedium
+from fogproof.scene.media.gaussian_puffs import GaussianPuffs
 from fogproof.scene.media.homogeneous import Medium
 from fogproof.scene.media.linear import LinearMedium
 from fogproof.scene.media.opengl_fog import OpenGLFog
@@ -34,6 +35,7 @@ KINDS: dict[str, type] = {
     "anisotropic": AnisotropicMedium,
     "opengl-fog": OpenGLFog,
     "voxel-grid": VoxelGrid,
+    "gaussian-puffs": GaussianPuffs,
 }
 """The `kind` of each medium in files and requests; without one a medium is homogeneous."""
 

@@ -1,0 +1,133 @@
+"""Samples beside points of a known law: how well does a density explain which is which?
+
+Given a point, the label "sample" has probability c s / (c s + q) if the samples have the density c s and the other points the
+density q (noise-contrastive estimation; Gutmann & Hyvarinen 2012). So any density, normalised or not, on any domain, has a
+likelihood, and residuals in cells that tell how much it leaves unexplained. No integral is needed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from fogproof.checks.density.tree import Tree
+from fogproof.checks.promises import at_any_atom, inside
+from fogproof.checks.subject import Subject, in_domain
+from fogproof.domains import Law
+
+Density = Callable[[np.ndarray], np.ndarray]
+
+_PER_LEAF = 16  # pilot points in a cell of the known law
+_ANYWHERE = 0.2  # share of the known law that is the domain's own
+_BACKGROUND = 1e-4  # of the known law is added to every density: one stray point refutes none
+_CELLS = 256
+_PER_CELL = 64  # points in a cell, at least
+
+
+@dataclass(frozen=True)
+class Fit:
+    """How a density explains the samples.
+
+    likelihood  logarithm of it
+    constant    by which the density had to be multiplied
+    left        chi-square of the residuals in cells, less its degrees of freedom
+    freedom     of that chi-square
+    """
+
+    likelihood: float
+    constant: float
+    left: float
+    freedom: int
+
+
+@dataclass(frozen=True)
+class Contrast:
+    """Samples x (n, ...), points z (m, ...) of a known law, and the known density at both, x first; `cell` says where each lies."""
+
+    law: Law
+    tree: Tree
+    x: np.ndarray
+    z: np.ndarray
+    q: np.ndarray
+    cell: np.ndarray
+
+    @staticmethod
+    def of(subject: Subject, n: int, rng: np.random.Generator) -> Contrast | None:
+        """Draw about n samples, and as many points of a law that follows a pilot of them; None if there are too few."""
+        pilot, x = good_points(subject, rng, max(n // 2, 1 << 12)), good_points(subject, rng, n)
+        if len(pilot) < _PER_CELL or len(x) < _PER_CELL:
+            return None
+        law = subject.domain.law(pilot)
+        k = len(law.axes)
+        tree = Tree.of(law.coordinates(pilot, rng.random((len(pilot), k))), _PER_LEAF)
+        anywhere = int(_ANYWHERE * len(x)) if tree.share.any() else len(x)
+        u = np.concatenate([rng.random((anywhere, k)), tree.draw(rng, len(x) - anywhere)])
+        z = law.place(u)
+        both = np.concatenate([x, z])
+        coordinates = np.concatenate([law.coordinates(x, rng.random((len(x), k))), u])
+        leaf = tree.leaf(coordinates)
+        share = anywhere / len(x)
+        q = law.density(both) * (share + (1 - share) * tree.density(coordinates, leaf))
+        cells = min(_CELLS, max(len(x) // _PER_CELL, 1), len(tree.share))
+        return Contrast(law, tree, x, z, q, leaf * cells // len(tree.share))
+
+    @property
+    def points(self) -> np.ndarray:
+        """All points, the samples first."""
+        return np.concatenate([self.x, self.z])
+
+    def part(self, n: int) -> Contrast:
+        """Return the contrast of the first n samples and as many evenly chosen known points."""
+        if n >= len(self.x):
+            return self
+        keep = np.concatenate([np.arange(n), len(self.x) + np.linspace(0, len(self.z) - 1, n).astype(int)])
+        return Contrast(self.law, self.tree, self.x[:n], self.z[keep[n:] - len(self.x)], self.q[keep], self.cell[keep])
+
+    def fit(self, s: np.ndarray) -> Fit:
+        """Return how well a density with values s (n + m,) at all points, samples first, explains the labels."""
+        n = len(self.x)
+        ratio = np.where(np.isfinite(s), s, 0.0) / self.q
+        log_c = 0.0
+        for _ in range(60):
+            w = np.exp(log_c) * ratio + _BACKGROUND
+            w /= 1 + w
+            slope = float(np.sum(w * (1 - w)))
+            step = float(np.clip((n - w.sum()) / max(slope, 1e-9), -2, 2))
+            log_c += step
+            if abs(step) < 1e-6:
+                break
+        odds = np.exp(log_c) * ratio + _BACKGROUND
+        w = odds / (1 + odds)
+        likelihood = float(np.sum(np.log(w[:n])) - np.sum(np.log1p(odds[n:])))
+        label = np.zeros(len(w))
+        label[:n] = 1.0
+        cells = int(self.cell.max()) + 1
+        residual, variance = (np.bincount(self.cell, v, cells) for v in (label - w, w * (1 - w)))
+        left = float(np.sum(residual**2 / (variance + 1.0))) - cells
+        return Fit(likelihood, float(np.exp(log_c)), left, cells)
+
+
+def good_points(subject: Subject, rng: np.random.Generator, n: int) -> np.ndarray:
+    """Return the samples, of n drawn, that are points of the continuous part."""
+    draw = subject.draw(rng, n)
+    good = inside(subject, draw) & in_domain(subject.domain, draw.x, subject.roundoff)
+    if subject.atoms:
+        good &= ~at_any_atom(subject, draw.x)
+    if draw.valid is not None:
+        good &= draw.valid
+    return draw.x[good]
+
+
+def claimed(subject: Subject) -> Density:
+    """Return the claimed density, 0 outside the domain."""
+
+    def density(x: np.ndarray) -> np.ndarray:
+        within = in_domain(subject.domain, x, 64 * subject.roundoff)
+        p = np.zeros(len(x))
+        if within.any():
+            p[within] = subject.density(x[within])
+        return np.where(np.isfinite(p), p, 0.0)
+
+    return density

@@ -1,0 +1,180 @@
+"""What goes wrong with directions: signs, frames, axes, sines, parameters of phase functions, lobes about a normal."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from itertools import permutations
+
+import numpy as np
+
+from fogproof.checks.diagnosis.contrast import Density
+from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting, known_number, of_points
+
+_MIRROR = np.array([1.0, 1.0, -1.0])
+_ALONG = 0.03  # from a coordinate axis: such a lobe is meant to be about it
+_LEAN = 0.03  # mean length of directions that have a direction
+
+
+def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
+    """Yield what may have happened to directions, the simplest first."""
+    yield Hypothesis("uniform law", "these samples are uniform", lambda s, _: _everywhere)
+    yield Hypothesis(
+        "sign convention", "these samples fit the pdf of the opposite direction", lambda s, _: lambda x: s.p(-x)
+    )
+    yield Hypothesis(
+        "sign convention", "these samples fit the pdf with z mirrored", lambda s, _: lambda x: s.p(x * _MIRROR)
+    )
+    yield Hypothesis(
+        "lost sign",
+        "these samples fit the pdf with its lower half folded up: the sign of z is lost",
+        lambda s, _: lambda x: (s.p(x) + s.p(x * _MIRROR)) * (x[:, 2] > 0),
+    )
+    for order in permutations(range(3)):
+        if order != (0, 1, 2):
+            names = "".join("xyz"[i] for i in order)
+            words = f"these samples fit the pdf with its axes (x, y, z) taken for ({', '.join(names)})"
+            yield Hypothesis("swapped axes", words, of_points(partial(np.take, indices=order, axis=1)))
+    sine = "missing Jacobian", "a sine is missing: these samples are uniform in theta where the pdf means solid angle"
+    yield Hypothesis(*sine, lambda s, _: lambda x: s.p(x) / _sine(x))
+    yield Hypothesis(
+        "missing Jacobian", "these samples have a sine of theta too many", lambda s, _: lambda x: s.p(x) * _sine(x)
+    )
+    yield Hypothesis(
+        "normalised cube",
+        "these samples are points of a cube, normalised without rejection",
+        lambda s, _: lambda x: s.p(x) / np.abs(x).max(axis=1) ** 3,
+    )
+    yield from _frames(setting)
+    yield Hypothesis(
+        "wrong power",
+        "these samples fit the pdf times a power of the cosine, {value}",
+        lambda s, a: lambda x: s.p(x) * np.abs(x[:, 2]) ** a,
+        (-1.5, -1.0, -0.5, 0.5, 1.0, 2.0, 3.0),
+        known_number(
+            {
+                -1.0: "a cosine is missing: uniform where the pdf is cosine-weighted",
+                2.0: "two cosines too many",
+                1.0: "a cosine too many",
+            }
+        ),
+    )
+    yield Hypothesis(
+        "stretched",
+        "these samples fit the pdf with x and y stretched by {value}",
+        lambda s, a: s.moved(lambda x: _unit(x * (1 / a, 1 / a, 1.0))),
+        (0.25, 0.5, 0.7, 1.4, 2.0, 4.0),
+    )
+    yield Hypothesis(
+        "missing square root",
+        "these samples fit the pdf with the cosine raised to the power {value}",
+        lambda s, a: s.moved(_cosine_to(1 / a)),
+        (0.5, 0.7, 1.5, 2.0, 3.0),
+        known_number({2.0: "a square root of the cosine is missing", 0.5: "a square root too many"}),
+    )
+    yield from _lobes(setting)
+
+
+def _everywhere(x: np.ndarray) -> np.ndarray:
+    return np.ones(len(x))
+
+
+def _sine(x: np.ndarray) -> np.ndarray:
+    return np.sqrt(np.maximum(x[:, 0] ** 2 + x[:, 1] ** 2, 1e-24))
+
+
+def _unit(x: np.ndarray) -> np.ndarray:
+    return np.asarray(x / np.sqrt(np.sum(x * x, axis=1, keepdims=True)))
+
+
+def _cosine_to(power: float) -> Callable[[np.ndarray], np.ndarray]:
+    def back(x: np.ndarray) -> np.ndarray:
+        mu = np.sign(x[:, 2]) * np.abs(x[:, 2]) ** power
+        scale = np.sqrt(np.maximum(1 - mu * mu, 0)) / _sine(x)
+        return np.stack([x[:, 0] * scale, x[:, 1] * scale, mu], axis=-1)
+
+    return back
+
+
+def _frames(setting: Setting) -> Iterator[Hypothesis]:
+    """Yield the turn that takes the mean direction of the claim to that of the samples, if both have one."""
+    claim, samples = setting.claimed_mean(), setting.contrast.x.mean(axis=0)
+    lengths = float(np.linalg.norm(claim)), float(np.linalg.norm(samples))
+    if min(lengths) < _LEAN:
+        return
+    a, b = claim / lengths[0], samples / lengths[1]
+    back = _turn(b, a)
+    degrees = float(np.degrees(np.arctan2(np.linalg.norm(np.cross(a, b)), a @ b)))
+    lean = ", ".join(f"{c:.3f}" for c in b)
+    words = f"these samples fit the pdf in another frame: turned by {degrees:.3g} degrees, towards ({lean})"
+    yield Hypothesis("rotated frame", words, lambda s, _: lambda x: s.p(x @ back.T))
+
+
+def _turn(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Return the rotation that takes the unit vector a to b the shortest way (Rodrigues)."""
+    axis, cosine = np.cross(a, b), float(a @ b)
+    if cosine < -1 + 1e-9:
+        other = np.eye(3)[int(np.argmin(np.abs(a)))]
+        axis = np.cross(a, other)
+        axis /= np.linalg.norm(axis)
+        return 2 * np.outer(axis, axis) - np.eye(3)
+    cross = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
+    return np.eye(3) + cross + cross @ cross / (1 + cosine)
+
+
+def _lobes(setting: Setting) -> Iterator[Hypothesis]:
+    """Yield the phase functions that everybody uses, about the mean direction of the claim, or z if it has none."""
+    mean = setting.claimed_mean()
+    length = float(np.linalg.norm(mean))
+    axis = mean / length if length > _LEAN else np.array([0.0, 0.0, 1.0])
+    axis = np.rint(axis) if np.linalg.norm(axis - np.rint(axis)) < _ALONG else axis
+    own = f"; the pdf's mean cosine is {length:.4g}" if length > _LEAN else ""
+
+    def about(f: Callable[[np.ndarray, float], np.ndarray]) -> Callable[[Setting, float], Density]:
+        return lambda s, value: lambda x: f(x @ axis, value)
+
+    g = (-0.95, -0.8, -0.6, -0.3, 0.05, 0.3, 0.6, 0.8, 0.9, 0.97)
+    yield Hypothesis(
+        "another parameter" if _is_lobe(setting, axis, length, henyey_greenstein) else "another law",
+        "these samples fit Henyey-Greenstein with g = {value}" + own,
+        about(henyey_greenstein),
+        g,
+    )
+    yield Hypothesis(
+        "another parameter" if _is_lobe(setting, axis, length, schlick) else "another law",
+        "these samples fit Schlick's phase function with k = {value}" + own,
+        about(schlick),
+        g,
+    )
+    yield Hypothesis("another law", "these samples fit Rayleigh's phase function", about(lambda mu, _: 1 + mu * mu))
+    yield Hypothesis(
+        "another law",
+        "these samples fit a von Mises-Fisher lobe with kappa = {value}" + own,
+        about(lambda mu, kappa: np.exp(kappa * (mu - 1))),
+        (0.5, 2.0, 8.0, 32.0, 128.0, 1000.0),
+    )
+
+
+def henyey_greenstein(mu: np.ndarray, g: float) -> np.ndarray:
+    """Return the law of Henyey & Greenstein (1941), up to a constant factor that does not depend on mu."""
+    return np.asarray((1 - g * g) / np.maximum(1 + g * g - 2 * g * mu, 1e-12) ** 1.5)
+
+
+def schlick(mu: np.ndarray, k: float) -> np.ndarray:
+    """Return the law of Schlick (1993)."""
+    return np.asarray((1 - k * k) / np.maximum(1 - k * mu, 1e-9) ** 2)
+
+
+def _is_lobe(setting: Setting, axis: np.ndarray, length: float, f: Callable[[np.ndarray, float], np.ndarray]) -> bool:
+    """Return whether the claim itself is such a lobe: its ratio to one with its own width is a constant."""
+    x = setting.contrast.x[:512]
+    p, mu = setting.p(x), x @ axis
+    if not np.all(p > 0):
+        return False
+    ends = np.argmax(mu), np.argmin(mu)
+    target = np.log(p[ends[0]] / p[ends[1]])
+    values = np.linspace(-0.999, 0.999, 4001)
+    own = np.array([np.log(f(mu[[ends[0]]], v)[0] / f(mu[[ends[1]]], v)[0]) for v in values])
+    best = values[int(np.argmin(np.abs(own - target)))]
+    ratio = np.log(p) - np.log(f(mu, best))
+    return bool(np.std(ratio) < 0.02)

@@ -1,0 +1,98 @@
+"""A hypothesis about a misfit: a density that the samples might have instead of the claimed one, with at most one parameter."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from fogproof.checks.diagnosis.contrast import Contrast, Density
+from fogproof.domains import Domain, Law
+
+_PINNED = 5e-3  # relative standard error of a parameter that may be named
+_STEP = 1e-5  # of the way to the nearer end of an axis
+
+
+@dataclass(frozen=True)
+class Setting:
+    """What hypotheses may look at: the domain, its known law, the claimed density p, samples x and points z of density q."""
+
+    domain: Domain
+    law: Law
+    p: Density
+    contrast: Contrast
+
+    def claimed_mean(self) -> np.ndarray:
+        """Return the mean of the points under the claimed density."""
+        z, q = self.contrast.z, self.contrast.q[len(self.contrast.x) :]
+        weight = self.p(z) / q
+        return np.tensordot(weight, z, axes=1) / max(float(weight.sum()), 1e-300)
+
+    def moved(self, back: Callable[[np.ndarray], np.ndarray]) -> Density:
+        """Return the density of points that a map has moved, by the inverse of the map: p(y) |dy/dx| at y = back(x)."""
+
+        def density(x: np.ndarray) -> np.ndarray:
+            y = back(x)
+            with np.errstate(all="ignore"):
+                volume = self._volume(back, x) * self.law.density(x) / self.law.density(y)
+            return np.where(np.isfinite(volume), self.p(y) * volume, 0.0)
+
+        return density
+
+    def _volume(self, back: Callable[[np.ndarray], np.ndarray], x: np.ndarray) -> np.ndarray:
+        k = len(self.law.axes)
+        half = np.full((len(x), k), 0.5)
+        u = self.law.coordinates(x, half)
+        matrix = np.empty((len(x), k, k))
+        for axis in range(k):
+            h = _STEP * np.minimum(u[:, axis], 1 - u[:, axis])
+            low, high = u.copy(), u.copy()
+            low[:, axis] -= h
+            high[:, axis] += h
+            ends = [self.law.coordinates(back(self.law.place(v)), half) for v in (low, high)]
+            matrix[:, :, axis] = (ends[1] - ends[0]) / (high[:, axis] - low[:, axis])[:, None]
+        return np.abs(np.linalg.det(matrix))
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """One explanation.
+
+    cause    the class of error it is
+    words    the explanation as a sentence about "these samples"; {value} stands for the fitted parameter
+    density  (setting, parameter) -> the density that the samples would have, known up to a constant
+    trials   values of the parameter to begin with, in order; () if there is none
+    named    parameter -> what it is better known as, "" if it is nothing special
+    """
+
+    cause: str
+    words: str
+    density: Callable[[Setting, float], Density]
+    trials: tuple[float, ...] = ()
+    named: Callable[[float, float], str] = field(default=lambda value, error: "")
+
+    def said(self, value: float, error: float) -> str:
+        """Return the explanation with the fitted parameter and its standard error."""
+        digits = max(math.ceil(-math.log10(max(error, 1e-12))) + 1, 1) if error > 0 else 4
+        number = f"{value:.{min(digits, 12)}f} +- {error:.1g}" if self.trials else ""
+        known = self.named(value, error) if self.trials else ""
+        return self.words.format(value=number) + (f", {known}" if known else "")
+
+
+def known_number(table: dict[float, str]) -> Callable[[float, float], str]:
+    """Return what names a parameter that lies within three standard errors of a telling number, if these are small."""
+
+    def named(value: float, error: float) -> str:
+        if error > _PINNED * abs(value):
+            return ""
+        near = {words for number, words in table.items() if abs(value - number) < 3 * error + 1e-3 * abs(number)}
+        return near.pop() if len(near) == 1 else ""
+
+    return named
+
+
+def of_points(back: Callable[[np.ndarray], np.ndarray]) -> Callable[[Setting, float], Density]:
+    """Return the hypothesis that the samples have the claimed density at back(x): a map that keeps volumes moved them."""
+    return lambda setting, _: lambda x: setting.p(back(x))

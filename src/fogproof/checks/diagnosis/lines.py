@@ -1,0 +1,95 @@
+"""What goes wrong with numbers: scales, shifts, signs, powers of the coordinate, logarithms of another base."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting, known_number
+from fogproof.domains import HalfLine, Interval
+
+_SCALES = (0.1, 0.3, 0.5, 0.8, 0.95, 1.05, 1.25, 2.0, 3.0, 10.0)
+_POWERS = (-2.0, -1.5, -1.0, -0.5, -0.2, 0.2, 0.5, 1.0, 1.5, 2.0)
+_FACTORS = known_number(
+    {
+        math.log(10): "the decimal logarithm was taken for the natural one",
+        1 / math.log(10): "the natural logarithm was taken for the decimal one",
+        2.0: "a factor of 2",
+        0.5: "a factor of 1/2",
+        4.0: "a factor of 4",
+        0.25: "a factor of 1/4",
+        math.log(2): "a factor of log 2",
+        1 / math.log(2): "the binary logarithm was taken for the natural one",
+        2 * math.pi: "a factor of 2 pi",
+        4 * math.pi: "a factor of 4 pi",
+        math.pi: "a factor of pi",
+    }
+)
+
+
+def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
+    """Yield what may have happened to numbers, the simplest first."""
+    domain, x = setting.domain, setting.contrast.x
+    spread = float(np.subtract(*np.quantile(x, [0.75, 0.25]))) or 1.0
+    origin = domain.a if isinstance(domain, (HalfLine, Interval)) else 0.0
+    if isinstance(domain, Interval):
+        length = domain.b - domain.a
+        yield Hypothesis("uniform law", "these samples are uniform", lambda s, _: lambda x: np.ones(len(x)))
+        yield Hypothesis(
+            "sign convention",
+            "these samples fit the pdf with its axis turned round",
+            lambda s, _: lambda x: s.p(domain.a + domain.b - x),
+        )
+        yield Hypothesis(
+            "shifted",
+            "these samples fit the pdf shifted round by {value}",
+            lambda s, d: lambda x: s.p(domain.a + (x - d - domain.a) % length),
+            tuple(length * f for f in (-0.25, -0.1, -0.05, -0.02, -0.01, 0.01, 0.02, 0.05, 0.1, 0.25)),
+        )
+    else:
+        yield Hypothesis("sign convention", "these samples fit the pdf of -x", lambda s, _: lambda x: s.p(-x))
+    yield Hypothesis(
+        "wrong scale",
+        "these samples fit the pdf of an exponent {value} times as large",
+        lambda s, a: lambda x: np.maximum(s.p(x), 0.0) ** a,
+        _SCALES,
+        _FACTORS,
+    )
+    yield Hypothesis(
+        "wrong scale",
+        "these samples fit the pdf stretched by {value}",
+        lambda s, a: lambda x: s.p(origin + (x - origin) / a),
+        _SCALES,
+        _FACTORS,
+    )
+    yield Hypothesis(
+        "shifted",
+        "these samples fit the pdf shifted by {value}",
+        lambda s, d: lambda x: s.p(x - d),
+        tuple(spread * f for f in (-3.0, -1.0, -0.3, -0.1, 0.1, 0.3, 1.0, 3.0)),
+    )
+    yield Hypothesis(
+        "missing Jacobian",
+        "these samples fit the pdf times a power of x, {value}",
+        lambda s, a: lambda x: s.p(x) * np.maximum(np.abs(x - origin), 1e-12) ** a,
+        _POWERS,
+        known_number({-1.0: "a factor x is missing", 1.0: "a factor x too many", -2.0: "a factor x^2 is missing"}),
+    )
+    if origin != 0.0:
+        yield Hypothesis(
+            "missing Jacobian",
+            "these samples fit the pdf divided by x: a factor x is missing",
+            lambda s, _: lambda x: s.p(x) / np.maximum(np.abs(x), 1e-12),
+        )
+    yield Hypothesis(
+        "missing Jacobian",
+        "these samples fit the pdf times sin x: an angle was taken for its cosine, or a sine is too many",
+        lambda s, _: lambda x: s.p(x) * np.abs(np.sin(x)),
+    )
+    yield Hypothesis(
+        "missing Jacobian",
+        "these samples fit the pdf over sin x: a sine is missing",
+        lambda s, _: lambda x: s.p(x) / np.maximum(np.abs(np.sin(x)), 1e-9),
+    )

@@ -1,0 +1,147 @@
+"""A run of one's own: verdicts about anybody's samplers and estimators inside one false-alarm probability, and their page."""
+
+from __future__ import annotations
+
+import datetime
+import importlib.metadata
+import shlex
+import sys
+import time
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any
+
+from fogproof.checks import Verdict, batch_generator, fresh_seed, jsonable
+from fogproof.errors import InvalidValueError
+from fogproof.validate import number
+from fogproof.verify import ALPHA, SCHEMA, environment
+
+_STATUS = {"not rejected": "passed", "rejected": "rejected", "inconclusive": "inconclusive"}
+
+
+class Run:
+    """Checks that share one false-alarm probability, whatever their number: the k-th gets alpha / (k (k + 1)).
+
+    >>> import numpy as np, fogproof
+    >>> run = fogproof.Run(seed=1)
+    >>> verdict = run.check("exponential", fogproof.check_sampler, lambda u: -np.log1p(-u[:, 0]), lambda t: np.exp(-t),
+    ...                     fogproof.HalfLine(0.0), dimensions=1, samples=20_000)
+    >>> run.exit_code
+    0
+
+    `run.write(folder)` makes the same page as `fogproof verify --report folder`.
+    """
+
+    def __init__(self, alpha: float = ALPHA, seed: int | None = None) -> None:
+        self.alpha = number("alpha", alpha, "must lie in (0, 1)", 0, 1, open_ends=True)
+        self.seed = fresh_seed() if seed is None else seed
+        self._started, self._clock = datetime.datetime.now(datetime.UTC), time.perf_counter()
+        self._cases: dict[str, dict[str, Any]] = {}
+
+    def check(self, name: str, check: Callable[..., Verdict], *arguments: Any, **options: Any) -> Verdict:
+        """Call a check of fogproof's, such as `check_sampler`, with its share of alpha and a seed of its own, and keep the verdict.
+
+        What it raises is raised, after it has been noted: the page shows it as not judged.
+        """
+        if name in self._cases:
+            raise InvalidValueError("name", "must be new in the run", name)
+        place = len(self._cases) + 1
+        options.setdefault("alpha", self.alpha / (place * (place + 1)))
+        options.setdefault("seed", int(batch_generator(self.seed, name, 0, 0).integers(2**62)))
+        clock = time.perf_counter()
+        try:
+            verdict = check(*arguments, **options)
+        except Exception as error:
+            reason = f"{type(error).__name__}: {error}"
+            self._cases[name] = case_record(name, None, title=check.__name__, status="error", reason=reason)
+            raise
+        seconds = time.perf_counter() - clock
+        self._cases[name] = case_record(name, verdict.to_dict(), title=check.__name__, seconds=seconds)
+        return verdict
+
+    def add(self, name: str, verdict: Verdict) -> None:
+        """Keep a verdict that was reached elsewhere, with an alpha of its own."""
+        if name in self._cases:
+            raise InvalidValueError("name", "must be new in the run", name)
+        self._cases[name] = case_record(name, verdict.to_dict(), seconds=verdict.seconds)
+
+    @property
+    def exit_code(self) -> int:
+        """0 if nothing was rejected, 1 if something was or could not be judged, 3 if something is only inconclusive."""
+        return _exit_code(self._cases.values())
+
+    def record(self) -> dict[str, Any]:
+        """Return the JSON-ready record of the run."""
+        return run_record(
+            list(self._cases.values()),
+            kind="run",
+            seed=self.seed,
+            alpha=self.alpha,
+            command=shlex.join(sys.argv),
+            started=self._started.isoformat(timespec="seconds"),
+            seconds=time.perf_counter() - self._clock,
+        )
+
+    def write(self, folder: str | Path) -> Path:
+        """Write page, figures, results.json, results.csv and junit.xml into a folder, and return the path of the page."""
+        from fogproof.reports import prepare_folder, write_report
+
+        prepare_folder(Path(folder))
+        return write_report(self.record(), folder)
+
+
+def case_record(
+    name: str,
+    verdict: dict[str, Any] | None,
+    *,
+    title: str = "",
+    status: str = "",
+    reason: str = "",
+    reproduce: str = "",
+    seconds: float | None = None,
+) -> dict[str, Any]:
+    """Return one case of a record, made from the plain data of a verdict."""
+    status = status or _STATUS[(verdict or {})["outcome"]]
+    return {
+        "name": name,
+        "title": title,
+        "kind": "estimator" if "estimator" in title else "sampler",
+        "status": status,
+        "expected": "not rejected",
+        "reason": reason,
+        "source": "",
+        "reference": "",
+        "twin": "",
+        "twin_result": None,
+        "plan": None,
+        "reproduce": reproduce or (verdict or {}).get("reproduce", ""),
+        "seconds": float((verdict or {}).get("seconds", 0.0)) if seconds is None else seconds,
+        "verdict": verdict,
+    }
+
+
+def run_record(
+    cases: list[dict[str, Any]], *, kind: str, seed: int, alpha: float, command: str, started: str, seconds: float
+) -> dict[str, Any]:
+    """Return the record of cases that no catalogue knows."""
+    return jsonable(
+        {
+            "schema": SCHEMA,
+            "kind": kind,
+            "fogproof": importlib.metadata.version("fogproof"),
+            "environment": environment(),
+            "command": command,
+            "seed": seed,
+            "alpha": alpha,
+            "started": started,
+            "seconds": seconds,
+            "exit_code": _exit_code(cases),
+            "oracle": [],
+            "cases": cases,
+        }
+    )
+
+
+def _exit_code(cases: Iterable[dict[str, Any]]) -> int:
+    statuses = {case["status"] for case in cases}
+    return 1 if statuses & {"rejected", "error"} else 3 if "inconclusive" in statuses else 0

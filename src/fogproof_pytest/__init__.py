@@ -1,0 +1,135 @@
+"""The pytest plugin of fogproof: a fixture `fogproof` whose checks share one false-alarm probability for the whole session.
+
+    def test_my_sampler(fogproof):
+        fogproof.check_sampler(my.sample, my.pdf, fogproof.UnitSphere(), dimensions=2)
+
+The test fails if the verdict is rejected, and if it is inconclusive unless it has the mark `fogproof(inconclusive="pass")`.
+Nothing but pytest is imported here: fogproof itself is loaded by the first test that asks for the fixture.
+"""
+
+from __future__ import annotations
+
+import secrets
+from collections.abc import Generator, Iterator
+from typing import Any
+
+import pytest
+
+ALPHA = 1e-6
+"""False-alarm probability of a session, unless told otherwise."""
+
+_SEED, _ALPHA, _WEIGHTS = pytest.StashKey[int](), pytest.StashKey[float](), pytest.StashKey[float]()
+_VERDICTS = pytest.StashKey[list[dict[str, Any]]]()
+_MARKER = (
+    "fogproof(weight=1, calls=None, inconclusive='fail'): this test's share of the session's false-alarm probability relative to "
+    "other tests; how many checks share it equally (None: the k-th gets 1/(k (k + 1)) of it); whether an inconclusive verdict "
+    "fails or passes"
+)
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Declare the options."""
+    group = parser.getgroup("fogproof", "verification of samplers and estimators")
+    group.addoption("--fogproof-seed", type=int, metavar="N", help="seed of every check; a fresh one by default")
+    group.addoption(
+        "--fogproof-alpha",
+        type=float,
+        default=ALPHA,
+        metavar="P",
+        help="false-alarm probability of the session (%(default)g)",
+    )
+    group.addoption("--fogproof-report", metavar="DIR", help="write all verdicts as a page, figures and results.json")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Draw the session's seed; workers of xdist are told it."""
+    config.addinivalue_line("markers", _MARKER)
+    alpha, seed = config.getoption("--fogproof-alpha"), config.getoption("--fogproof-seed")
+    if not 0 < alpha < 1:
+        raise pytest.UsageError(f"--fogproof-alpha must lie in (0, 1), got {alpha}")
+    if seed is not None and seed < 0:
+        raise pytest.UsageError(f"--fogproof-seed must be a whole number >= 0, got {seed}")
+    told = getattr(config, "workerinput", {}).get("fogproof_seed")
+    config.stash[_SEED] = told if told is not None else secrets.randbits(62) if seed is None else seed
+    config.stash[_ALPHA] = alpha
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_configure_node(node: Any) -> None:
+    """Tell a worker of xdist the seed."""
+    node.workerinput["fogproof_seed"] = node.config.stash[_SEED]
+
+
+def pytest_report_header(config: pytest.Config) -> str:
+    """Say the seed, so that a failure can be repeated."""
+    return (
+        f"fogproof: --fogproof-seed={config.stash[_SEED]}, false-alarm probability {config.stash[_ALPHA]:g} a session"
+    )
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> Iterator[None]:
+    """Add up the weights before any test is deselected: a share does not depend on -k, -x, -m, or the number of workers."""
+    config.stash[_WEIGHTS] = sum(_marked(item).get("weight", 1.0) for item in items if _asks(item))
+    return (yield)
+
+
+def _asks(item: pytest.Item) -> bool:
+    return "fogproof" in getattr(item, "fixturenames", ())
+
+
+def _marked(item: pytest.Item) -> dict[str, Any]:
+    marker = item.get_closest_marker("fogproof")
+    known = {"weight", "calls", "inconclusive"}
+    said = dict(marker.kwargs) if marker else {}
+    if unknown := set(said) - known:
+        raise pytest.UsageError(f"{item.nodeid}: the marker fogproof knows {sorted(known)}, got {sorted(unknown)}")
+    if not said.get("weight", 1.0) > 0:
+        raise pytest.UsageError(f"{item.nodeid}: weight must be > 0, got {said['weight']}")
+    return said
+
+
+@pytest.fixture
+def fogproof(request: pytest.FixtureRequest) -> Any:
+    """The checks of fogproof inside the session's false-alarm probability, and everything else that `fogproof` has."""
+    from fogproof_pytest.checks import Checks
+
+    item, config = request.node, request.config
+    said = _marked(item)
+    share = config.stash[_ALPHA] * said.get("weight", 1.0) / config.stash[_WEIGHTS]
+    verdicts = item.stash.setdefault(_VERDICTS, [])
+    verdicts.clear()  # a test that is run again says the same again
+    passes = said.get("inconclusive", "fail") == "pass"
+    return Checks(item.nodeid, share, config.stash[_SEED], said.get("calls"), passes, verdicts)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) -> Generator[None, Any, Any]:
+    """Attach the verdicts to the report of the call, as plain data that xdist can send, and in a word to junit."""
+    report = yield
+    verdicts = item.stash.get(_VERDICTS, None)
+    if verdicts and call.when == "call":
+        report.fogproof = list(verdicts)
+        words = "; ".join(f"{v['check']}: {v['outcome']}, alpha {v['alpha']:.2g}" for v in verdicts)
+        item.user_properties.append(("fogproof", words))
+    return report
+
+
+def pytest_terminal_summary(terminalreporter: Any, exitstatus: int, config: pytest.Config) -> None:
+    """Say what was judged, what of the false-alarm probability was spent, and what could not have been missed."""
+    told = {}
+    for reports in terminalreporter.stats.values():
+        for report in reports:
+            for number, verdict in enumerate(getattr(report, "fogproof", ())):
+                told[report.nodeid, number] = verdict
+    folder = config.getoption("--fogproof-report")
+    if not told and not folder:
+        return
+    from fogproof_pytest.summary import summary, written
+
+    terminalreporter.section("fogproof")
+    for line in summary(told, config.stash[_ALPHA], config.stash[_SEED]):
+        terminalreporter.write_line(line)
+    if folder:
+        settings = (config.stash[_SEED], config.stash[_ALPHA], int(exitstatus), " ".join(config.invocation_params.args))
+        terminalreporter.write_line(f"report: {written(told, folder, *settings)}")

@@ -1,0 +1,69 @@
+"""What a test gets as `fogproof`: the package's checks, each inside its share of the session's false-alarm probability."""
+
+from __future__ import annotations
+
+import hashlib
+import inspect
+from collections.abc import Callable
+from typing import Any
+
+import fogproof
+from fogproof.checks import InconclusiveError, RejectedError, Verdict
+from fogproof.errors import InvalidValueError
+
+
+class Checks:
+    """Stands for the package `fogproof` in one test.
+
+    share     the test's share of the false-alarm probability
+    calls     how many checks share it equally; None: the k-th gets 1 / (k (k + 1)) of it, which adds up to at most all of it
+    verdicts  told of every verdict, in plain data
+    """
+
+    def __init__(
+        self, test: str, share: float, seed: int, calls: int | None, passes: bool, verdicts: list[dict[str, Any]]
+    ) -> None:
+        self._test, self._share, self._seed = test, share, seed
+        self._calls, self._passes, self._verdicts = calls, passes, verdicts
+
+    def __getattr__(self, name: str) -> Any:
+        thing = getattr(fogproof, name)
+        return self._checking(name, thing) if name.startswith("check_") or name == "compare_estimators" else thing
+
+    def _checking(self, name: str, check: Callable[..., Verdict]) -> Callable[..., Verdict]:
+        takes = inspect.signature(check).parameters
+
+        def checked(*arguments: Any, **options: Any) -> Verdict:
+            __tracebackhide__ = True
+            number = len(self._verdicts) + 1
+            if "alpha" in options:
+                fix = "give the test a weight instead: @pytest.mark.fogproof(weight=...)"
+                raise InvalidValueError("alpha", "is shared out by the session", options["alpha"], fix)
+            if "alpha" in takes:
+                options["alpha"] = self._alpha(number)
+            if "seed" in takes:
+                options.setdefault("seed", self._seed_of(number))
+            verdict = check(*arguments, **options)
+            self._verdicts.append({"check": name, **verdict.to_dict()})
+            if verdict.outcome == "rejected":
+                raise RejectedError(str(verdict))
+            if verdict.outcome == "inconclusive" and not self._passes:
+                ways = "give it what would decide, or mark the test @pytest.mark.fogproof(inconclusive='pass')"
+                raise InconclusiveError(f"{verdict}\n  an inconclusive verdict is no pass: {ways}")
+            return verdict
+
+        return checked
+
+    def _alpha(self, number: int) -> float:
+        if self._calls is None:
+            return self._share / (number * (number + 1))
+        if number > self._calls:
+            raise InvalidValueError(
+                "calls", f"must be at least the checks of the test, this is number {number}", self._calls
+            )
+        return self._share / self._calls
+
+    def _seed_of(self, number: int) -> int:
+        """Return a seed that depends on the test's name: another run of it with the session's seed says the same."""
+        words = f"{self._seed}/{self._test}/{number}".encode()
+        return int.from_bytes(hashlib.blake2b(words, digest_size=8).digest()) >> 2

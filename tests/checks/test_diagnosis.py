@@ -1,0 +1,87 @@
+"""The cause of a rejection is a hypothesis that explains the samples: bugs that shipped are named, what nothing explains is not."""
+
+import numpy as np
+import pytest
+from field_bugs import BUGS
+from field_bugs.bug import directions, even, hg
+
+from fogproof import HalfLine, Interval, UnitSphere, UnitSquare, check_sampler
+from fogproof.checks.diagnosis.factors import named_factor
+
+N = 200_000
+
+
+@pytest.mark.parametrize("bug", BUGS, ids=lambda bug: bug.name)
+def test_bugs_that_shipped_are_rejected_and_named(bug):
+    verdict = bug.check(N, int(np.random.SeedSequence().generate_state(1)[0]))
+    assert verdict.outcome == "rejected", str(verdict)
+    assert verdict.cause in bug.causes, str(verdict)
+
+
+def number(verdict):
+    """Return the fitted parameter and its standard error, as the diagnosis tells them."""
+    words = verdict.diagnosis.split()
+    at = words.index("+-")
+    return float(words[at - 1]), float(words[at + 1].rstrip(";,)"))
+
+
+@pytest.mark.parametrize("g", [0.785, 0.5])
+def test_a_parameter_is_fitted_with_its_error(g):
+    verdict = check_sampler(hg(g)[0], hg(0.8)[1], UnitSphere(), dimensions=2, samples=1_000_000)
+    assert verdict.cause == "another parameter", str(verdict)
+    value, error = number(verdict)
+    assert error < 0.003
+    assert abs(value - g) < 6 * error, verdict.diagnosis
+
+
+def test_a_rate_is_fitted_with_its_error():
+    verdict = check_sampler(
+        lambda u: -np.log1p(-u[:, 0]) / 1.03, lambda t: np.exp(-t), HalfLine(0), dimensions=1, samples=500_000
+    )
+    assert verdict.cause == "wrong scale", str(verdict)
+    value, error = number(verdict)
+    assert abs(value - 1.03) < 6 * error, verdict.diagnosis
+
+
+def test_what_nothing_explains_is_not_named():
+    def sample(u):
+        x = u[:, 0]
+        return x + 0.002 * np.sin(60 * np.pi * x) / (60 * np.pi) * 30
+
+    verdict = check_sampler(sample, lambda x: np.ones(len(x)), Interval(0, 1), dimensions=1, samples=1_000_000)
+    assert verdict.outcome == "rejected"
+    assert verdict.cause == "shape", str(verdict)
+    assert not verdict.diagnosis
+
+
+def test_a_band_is_skipped_only_if_its_absence_explains_the_misfit():
+    def band(u):
+        return np.where(np.abs(u[:, 0] - 0.4) < 0.01, u[:, 1], u[:, 0])
+
+    ones = lambda x: np.ones(len(x))  # noqa: E731
+    skipped = check_sampler(band, ones, Interval(0, 1), dimensions=2, samples=N)
+    assert skipped.cause == "skipped band", str(skipped)
+    ends = [float(word) for word in skipped.diagnosis.replace(";", " ").split() if word[:2] == "0."]
+    assert np.allclose(ends, [0.39, 0.41], atol=1e-3), skipped.diagnosis
+    notched = check_sampler(lambda u: u, lambda x: 4 * x[:, 0] * x[:, 1], UnitSquare(), dimensions=2, samples=N)
+    assert notched.cause == "uniform law", "the least likely cells lack most samples, but no band explains it"
+
+
+def test_a_right_sampler_has_no_cause():
+    verdict = check_sampler(
+        lambda u: directions(2 * u[:, 0] - 1, u[:, 1]), even, UnitSphere(), dimensions=2, samples=20_000
+    )
+    assert (verdict.cause, verdict.diagnosis) == ("", "")
+
+
+@pytest.mark.parametrize(("value", "error", "name"), [
+    (4 * np.pi, 1e-6, "4 pi"),
+    (453.0, 70.0, ""),
+    (12.0, 0.6, ""),
+    (np.pi / 4, 1e-7, "pi/4"),
+    (0.6, 1e-7, "the albedo"),
+    (1.0, 1e-7, ""),
+    (np.nan, 1e-7, ""),
+])  # fmt: skip
+def test_a_constant_is_named_only_where_it_is_pinned(value, error, name):
+    assert named_factor(value, error, {"the albedo": 0.6}) == name

@@ -1,0 +1,117 @@
+"""A user's three-line test fails for a wrong sampler and passes for a right one, inside one false-alarm probability a session."""
+
+import json
+import re
+import subprocess
+import sys
+import textwrap
+from xml.etree import ElementTree
+
+import pytest
+
+RIGHT = """
+    import numpy as np
+
+    def test_right(fogproof):
+        sample, pdf = lambda u: -np.log1p(-u[:, 0]), lambda t: np.exp(-t)
+        fogproof.check_sampler(sample, pdf, fogproof.HalfLine(0.0), dimensions=1, samples=20_000)
+"""
+WRONG = """
+    import numpy as np
+
+    def test_wrong(fogproof):
+        sample, pdf = lambda u: u[:, 0] ** 2, lambda x: np.ones(len(x))
+        fogproof.check_sampler(sample, pdf, fogproof.Interval(0.0, 1.0), dimensions=1, samples=20_000)
+"""
+DEAD = """
+    import numpy as np
+
+    def test_dead(fogproof):
+        fogproof.check_estimator(lambda rng, n: np.zeros(n), 0.3, samples=1000)
+"""
+
+
+def run(folder, text, *options):
+    (folder / "test_mine.py").write_text(textwrap.dedent(text))
+    return subprocess.run(
+        [sys.executable, "-m", "pytest", "-p", "fogproof_pytest", "-p", "no:cacheprovider", "-q", *options, str(folder)],
+        capture_output=True, text=True, cwd=folder,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("workers", [(), ("-n", "2")], ids=["alone", "xdist"])
+def test_right_passes_and_wrong_fails(tmp_path, workers):
+    out = run(
+        tmp_path, RIGHT + textwrap.dedent(WRONG).replace("\n", "\n    "), *workers, f"--junitxml={tmp_path}/junit.xml"
+    )
+    assert out.returncode == 1, out.stdout + out.stderr
+    assert "1 failed, 1 passed" in out.stdout
+    assert "RejectedError" in out.stdout
+    assert "fogproof_pytest/checks.py" not in out.stdout  # the user sees his own line
+    assert "verdicts: " in out.stdout
+    spent, budget = re.search(r"spent: (\S+) of (\S+);", out.stdout).groups()
+    assert 0 < float(spent) <= float(budget)
+    properties = {p.attrib["value"] for p in ElementTree.parse(tmp_path / "junit.xml").iter("property")}
+    assert any("check_sampler: rejected" in value for value in properties)
+
+
+def test_an_inconclusive_verdict_fails_unless_marked(tmp_path):
+    out = run(tmp_path, DEAD)
+    assert out.returncode == 1
+    assert "an inconclusive verdict is no pass" in out.stdout
+    marked = DEAD.replace(
+        "    def test", "    import pytest\n\n    @pytest.mark.fogproof(inconclusive='pass')\n    def test"
+    )
+    assert run(tmp_path, marked).returncode == 0
+
+
+def test_shares_do_not_depend_on_what_is_selected(tmp_path):
+    many = RIGHT + "".join(f"    def test_{i}(fogproof): pass\n" for i in range(9))
+    (report,) = [tmp_path / "report"]
+    alphas = []
+    for selection in ((), ("-k", "right")):
+        out = run(tmp_path, many, "--fogproof-report", str(report), "--fogproof-alpha", "1e-4", *selection)
+        assert out.returncode == 0, out.stdout
+        (case,) = json.loads((report / "results.json").read_text())["cases"]
+        alphas.append(case["verdict"]["alpha"])
+        assert (report / "index.html").exists()
+    assert alphas == [1e-4 / 10 / 2] * 2
+
+
+def test_the_same_seed_says_the_same(tmp_path):
+    seeds = []
+    for _ in range(2):
+        run(tmp_path, RIGHT, "--fogproof-seed", "7", "--fogproof-report", str(tmp_path / "report"))
+        seeds.append(json.loads((tmp_path / "report" / "results.json").read_text())["cases"][0]["verdict"]["seed"])
+    assert seeds[0] == seeds[1]
+    assert "--fogproof-seed=" in run(tmp_path, RIGHT).stdout
+
+
+def test_many_checks_in_one_test_spend_no_more_than_its_share(tmp_path):
+    text = RIGHT.replace("        fogproof.check", "        for _ in range(5):\n            fogproof.check")
+    run(tmp_path, text, "--fogproof-report", str(tmp_path / "report"))
+    cases = json.loads((tmp_path / "report" / "results.json").read_text())["cases"]
+    assert [case["name"].endswith(f"#{i + 1}") for i, case in enumerate(cases)] == [True] * 5
+    assert sum(case["verdict"]["alpha"] for case in cases) <= 1e-6
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (("dimensions=1, samples", "alpha=0.5, dimensions=1, samples"), "alpha is shared out by the session"),
+        (("def test_right", "def test_right_"), "1 passed"),
+    ],
+)
+def test_misuse_is_told(tmp_path, change, words):
+    assert words in run(tmp_path, RIGHT.replace(*change)).stdout
+
+
+def test_wrong_options_are_told(tmp_path):
+    assert "--fogproof-alpha must lie in (0, 1)" in run(tmp_path, RIGHT, "--fogproof-alpha", "2").stderr
+    marked = RIGHT.replace("    def test", "    import pytest\n\n    @pytest.mark.fogproof(wieght=2)\n    def test")
+    assert "the marker fogproof knows" in run(tmp_path, marked).stdout + run(tmp_path, marked).stderr
+
+
+def test_the_plugin_alone_loads_nothing_heavy():
+    code = "import fogproof_pytest, sys; print([m for m in ('numpy', 'fogproof', 'scipy') if m in sys.modules])"
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout.strip() == "[]"
