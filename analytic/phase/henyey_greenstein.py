@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from fogproof.analytic.airlight.phase import AirlightPhase, Array
-from fogproof.analytic.arithmetic.error_free import EPS
+from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.analytic.proven.balls import flint, rational
 from fogproof.scene.phase import HenyeyGreenstein
 
@@ -66,9 +66,11 @@ def mean_cosine(phase: HenyeyGreenstein) -> tuple[float, float]:
 
 
 def legendre_moments(phase: HenyeyGreenstein, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return g^l; relative error eps."""
-    value = phase.g ** np.arange(count + 1.0)
-    return value, EPS * np.abs(value)
+    """Return g^l; relative error 2 eps, until it underflows."""
+    with np.errstate(under="ignore"):
+        value = phase.g ** np.arange(count + 1.0)
+        lost = np.where(np.abs(value) < 1e-290, TINY, 0.0) if phase.g else 0.0
+        return value, 2 * EPS * np.abs(value) + lost
 
 
 def airlight(phase: HenyeyGreenstein) -> AirlightPhase:

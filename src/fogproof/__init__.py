@@ -38,6 +38,7 @@ if TYPE_CHECKING:
         check_bound,
         check_convergence,
         check_estimator,
+        check_family,
         check_mis,
         check_reciprocity,
         check_sampler,
@@ -89,6 +90,7 @@ __all__ = [
     "check_bound",
     "check_convergence",
     "check_estimator",
+    "check_family",
     "check_mis",
     "check_reciprocity",
     "check_sampler",
@@ -103,6 +105,7 @@ __all__ = [
 _LAZY = {
     "check_sampler": "fogproof.checks",
     "check_estimator": "fogproof.checks",
+    "check_family": "fogproof.checks",
     "compare_estimators": "fogproof.checks",
     "check_bound": "fogproof.checks",
     "check_convergence": "fogproof.checks",

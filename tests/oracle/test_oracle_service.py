@@ -4,6 +4,8 @@ import dataclasses
 import io
 import json
 import secrets
+import subprocess
+import sys
 import time
 
 import numpy as np
@@ -200,6 +202,34 @@ def test_a_text_separator_within_a_string_is_no_end_of_line():
 
 def test_a_single_request_obeys_the_same_rules():
     assert answer_text("[" * 400)["error"]["code"] == "invalid-input"
+
+
+COMMAND = [sys.executable, "-c", "from fogproof.cli import main; main()", "oracle"]
+
+
+def test_the_list_says_all_that_is_declared():
+    run = subprocess.run([*COMMAND, "--list"], capture_output=True, text=True, check=True)
+    listed = [json.loads(line) for line in run.stdout.splitlines()]
+    assert [row["quantity"] for row in listed] == list(quantities())
+    assert all(row["unit"] and row["convention"] and row["source"] and row["example"] for row in listed)
+
+
+@pytest.mark.parametrize("indent", [None, 1])
+def test_a_file_holds_one_object_or_lines(indent, tmp_path):
+    path = tmp_path / "requests.json"
+    path.write_text(json.dumps(SKY, indent=indent) + ("\n" + json.dumps(SKY) if indent is None else ""))
+    run = subprocess.run([*COMMAND, path], capture_output=True, text=True, check=True)
+    assert len(run.stdout.splitlines()) == (1 if indent else 2)
+
+
+def test_who_stops_reading_ends_the_service(tmp_path):
+    path = tmp_path / "requests.jsonl"
+    path.write_text((json.dumps(SKY) + "\n") * 5000)
+    with subprocess.Popen([*COMMAND, path], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as oracle_process:
+        oracle_process.stdout.readline()
+        oracle_process.stdout.close()
+        assert oracle_process.wait(timeout=60) == 141
+        assert oracle_process.stderr.read() == b""
 
 
 def test_fuzzed_lines_are_all_answered():

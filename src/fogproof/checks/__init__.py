@@ -4,6 +4,7 @@ from fogproof.checks.bound import check_bound
 from fogproof.checks.compare import compare_estimators
 from fogproof.checks.convergence import check_convergence
 from fogproof.checks.estimator import check_estimator
+from fogproof.checks.family import check_family
 from fogproof.checks.generators import check_streams
 from fogproof.checks.limits import within
 from fogproof.checks.mis import check_mis
@@ -40,6 +41,7 @@ __all__ = [
     "check_bound",
     "check_convergence",
     "check_estimator",
+    "check_family",
     "check_mis",
     "check_reciprocity",
     "check_sampler",

@@ -40,6 +40,12 @@ class _LazyGroup(click.Group):
             return None
         return importlib.import_module(f"fogproof.cli.{name}_command").command
 
+    def invoke(self, ctx: click.Context) -> Any:
+        try:
+            return super().invoke(ctx)
+        except BrokenPipeError:  # click would end with 1, which here means that something was rejected
+            raise click.exceptions.Exit(_nobody_reads()) from None
+
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         with formatter.section("Commands"):
             formatter.write_dl(list(_COMMANDS.items()))

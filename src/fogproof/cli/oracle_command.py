@@ -70,7 +70,7 @@ def _file(path: str) -> Callable[[int], bytes]:
             content = file.read()
     except OSError as error:
         raise InvalidInputError(f"cannot read the request file {path}: {error.strerror}", path) from None
-    if not any(_is_json(line) for line in content.split(b"\n") if line.strip()):
+    if _is_json(content) or not any(map(_is_json, content.split(b"\n"))):
         content = content.replace(b"\n", b" ")
     return io.BytesIO(content).read1
 

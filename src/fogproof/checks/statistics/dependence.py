@@ -65,25 +65,25 @@ class Succession:
 
     def after(self, x: np.ndarray, sizes: Sequence[int]) -> Succession:
         """Return the record after one more batch (n, channels), drawn in calls of these sizes."""
-        large, prints = x > self.threshold, fingerprints(x)
+        large, prints = np.ascontiguousarray((x > self.threshold).T), fingerprints(x)
         pairs, both, means, windows = self.pairs.copy(), self.both + np.zeros((1, x.shape[1]), dtype=np.int64), [], []
         alike, start = self.alike, 0
         for size in sizes:
             here = slice(start, start + size)
             start += size
-            one = large[here]
-            for way, (left, right) in enumerate(_paired(one)):
-                pairs[way] += len(left)
-                both[way] += np.count_nonzero(left & right, axis=0)
+            for way, (left, right) in enumerate(_paired(large[:, here])):
+                pairs[way] += left.shape[1]
+                both[way] += [np.count_nonzero(a & b) for a, b in zip(left, right, strict=True)]
             alike += int(np.count_nonzero(prints[here][1:] == prints[here][:-1]))
             means.append((size, np.mean(x[here], axis=0)))
-            windows.append(_stretches(prints[here]))
+            if len(self.windows) < _MOST_WINDOWS:
+                windows.append(_stretches(prints[here]))
         room = max(_REMEMBERED - len(self.prints), 0)
         calls = np.repeat(np.arange(len(sizes)) + len(self.means), sizes)
         return replace(
             self,
             n=self.n + len(x),
-            large=self.large + np.count_nonzero(large, axis=0),
+            large=self.large + np.array([np.count_nonzero(one) for one in large]),
             pairs=pairs,
             both=both,
             alike=alike,
@@ -95,9 +95,10 @@ class Succession:
 
 
 def _paired(large: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
-    n, half = len(large), len(large) // 2
-    pairs = [(large[:-lag], large[lag:]) if lag < n else (large[:0], large[:0]) for lag in LAGS]
-    return [*pairs, (large[:half], large[half : 2 * half]), (large[:half], large[::-1][:half])]
+    """Return all pairs of realisations that are looked at, of (channels, n)."""
+    n, half = large.shape[1], large.shape[1] // 2
+    pairs = [(large[:, : max(n - lag, 0)], large[:, lag:]) for lag in LAGS]
+    return [*pairs, (large[:, :half], large[:, half : 2 * half]), (large[:, :half], large[:, ::-1][:, :half])]
 
 
 def fingerprints(rows: np.ndarray) -> np.ndarray:

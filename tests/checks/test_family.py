@@ -1,0 +1,105 @@
+"""A family with an error in a corner of its parameters is rejected, and shrunk to a simple one; a right family is not."""
+
+import numpy as np
+import pytest
+from hypothesis import strategies as st
+
+import fogproof
+from fogproof.checks import fresh_seed
+from fogproof.checks.family import _rounds
+
+
+class Tilted:
+    """Henyey & Greenstein's function about +z, by uniforms; `bug` changes what is drawn."""
+
+    domain, dimensions = fogproof.UnitSphere(), 2
+
+    def __init__(self, g, bug=lambda g: g):
+        self.g, self.drawn = g, bug(g)
+
+    def sample(self, u):
+        g, x = self.drawn, u[:, 0]
+        mu = 1 - 2 * (1 - g) ** 2 * (1 - x) * (1 + g * x) / (1 - g + 2 * g * x) ** 2
+        s, phi = np.sqrt(np.maximum(0, 1 - mu * mu)), 2 * np.pi * u[:, 1]
+        return np.stack([s * np.cos(phi), s * np.sin(phi), mu], axis=-1)
+
+    def pdf(self, x):
+        return (1 - self.g**2) / (4 * np.pi * (1 + self.g**2 - 2 * self.g * x[:, 2]) ** 1.5)
+
+
+class Mean:
+    """An estimator of p that is wrong for small p."""
+
+    def __init__(self, p):
+        self.p, self.reference = p, p
+
+    def draw(self, rng, n):
+        return (rng.random(n) < (self.p if self.p > 0.1 else 0.0)).astype(float)
+
+
+BUGS = {
+    "a guard g < eps for abs(g) < eps": (
+        lambda g: g if g > 1e-3 else 0.0,
+        lambda g: -0.99 <= g < -1e-3,
+        "parameter <= -",
+    ),
+    "a clamp at .8": (lambda g: min(g, 0.8), lambda g: 0.8 < g <= 0.99, "rejected for parameter >= 0."),
+    "a flipped sign beyond .5": (
+        lambda g: -g if g > 0.5 else g,
+        lambda g: 0.5 < g <= 0.99,
+        "rejected for parameter >= 0.",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", BUGS)
+def test_an_error_in_a_corner_is_found_and_shrunk(name):
+    bug, wrong, side = BUGS[name]
+    seed = fresh_seed()
+    verdict = fogproof.check_family(lambda g: Tilted(g, bug), st.floats(-0.99, 0.99), samples=1_000_000, seed=seed)
+    assert verdict.outcome == "rejected", f"{verdict} (seed {seed})"
+    simplest = float(verdict.settings["parameter"])
+    assert wrong(simplest)
+    assert simplest * 1024 % 1 == 0, f"{simplest} is not simple (seed {seed})"
+    assert side in verdict.findings[0].message
+    assert sum(f.alpha for f in verdict.findings[1:] if f.alpha) <= verdict.alpha
+    again = fogproof.check_family(lambda g: Tilted(g, bug), st.floats(-0.99, 0.99), samples=1_000_000, seed=seed)
+    assert again.settings["parameter"] == verdict.settings["parameter"]
+
+
+def test_a_right_family_is_not_rejected():
+    seed = fresh_seed()
+    verdict = fogproof.check_family(Tilted, st.floats(-0.9, 0.9), members=16, samples=400_000, seed=seed)
+    assert verdict.outcome == "not rejected", f"{verdict} (seed {seed})"
+    assert verdict.samples <= 400_000 * 1.1
+    assert verdict.resolution is not None
+
+
+def test_estimators_and_lists():
+    verdict = fogproof.check_family(Mean, [0.5, 0.3, 0.2, 0.1, 0.05], samples=200_000, seed=3, bounds=(0.0, 1.0))
+    assert verdict.outcome == "rejected"
+    assert verdict.settings["parameter"] == "0.1"
+    assert "rejected for parameter <= 0.1" in verdict.findings[0].message
+
+
+def test_a_member_that_raises_is_wrong():
+    def make(g):
+        if g < 0:
+            raise fogproof.InvalidValueError("g", "must be >= 0", g)
+        return Tilted(g)
+
+    verdict = fogproof.check_family(make, [0.5, 0.1, -0.1], samples=60_000, seed=1)
+    assert verdict.outcome == "rejected"
+    assert "g must be >= 0" in str(verdict)
+
+
+def test_alpha_is_spent_once():
+    for members in (1, 2, 3, 64, 100):
+        rounds = _rounds(members, 10**6, 1e-3)
+        assert sum(kept * share for kept, _, share in rounds) <= 1e-3 / 2 * (1 + 1e-12)
+        assert sum(kept * each for kept, each, _ in rounds) <= 10**6 + 1000 * sum(kept for kept, _, _ in rounds)
+
+
+def test_nothing_to_try_is_told():
+    with pytest.raises(fogproof.InvalidValueError, match="parameters must not be empty"):
+        fogproof.check_family(Tilted, [])
