@@ -270,3 +270,26 @@ def test_bad_input(build, argument, got):
         build()
     assert caught.value.argument == argument
     assert got in str(caught.value)
+
+
+@pytest.mark.parametrize(("start", "exponent"), [(0.0, 0), (0.25, 0), (0.1, 2)])
+def test_a_fall_off_that_is_linear_in_the_angle(start, exponent):
+    ray = Ray([0, 0, -2.0], [0, 0, 1.0], 5.0)
+    light = SpotLight((0.6, -0.8, 0.5), (-6 / 11, 9 / 11, 2 / 11), 3.0, 0.7, start, exponent, "linear")
+    found = single_scattering(MEDIUM, ray, light)
+    assert abs(mp.mpf(float(found.value)) - from_point(MEDIUM, ray, light)) <= found.error <= 1e-11 * found.value
+
+
+def test_the_spot_of_blender():
+    """Half a degree inside the edge the intensity of Cycles is smoothstep((cos - edge)/((1 - edge) blend))."""
+    size, blend = math.radians(60), 0.4
+    light = SpotLight.from_blender((0, 0, 0), (0, 0, 1.0), 1.0, size, blend)
+    edge = math.cos(size / 2)
+    assert math.cos(light.falloff_start) == pytest.approx(edge + blend * (1 - edge))
+    assert SpotLight.from_blender((0, 0, 0), (0, 0, 1.0), 1.0, size, 0.0).falloff_start == pytest.approx(
+        light.half_angle
+    )
+    with pytest.raises(InvalidValueError, match="blend"):
+        SpotLight.from_blender((0, 0, 0), (0, 0, 1.0), 1.0, size, 1.5)
+    with pytest.raises(InvalidValueError, match="profile"):
+        SpotLight((0, 0, 0), (0, 0, 1.0), 1.0, 1.0, 0.5, profile="cubic")
