@@ -16,7 +16,7 @@ import sys
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -32,10 +32,12 @@ from fogproof.checks import (
     compare_estimators,
     fresh_seed,
 )
+from fogproof.checks.prepared import Prepared
 from fogproof.contracts import Draw, Draws, Reference
-from fogproof.domains import Discrete, HalfLine, Interval, RealLine, UnitSquare
+from fogproof.domains import Discrete, HalfLine, Interval, Product, RealLine, UnitSphere, UnitSquare
 from fogproof.estimators import Directions, FreePath
 from fogproof.scene import HenyeyGreenstein, Rayleigh
+from fogproof.verify import select
 
 LEVEL = 1e-3
 BAND = 1e-3  # probability outside the band, all kinds together
@@ -87,6 +89,18 @@ def _normal(u: np.ndarray) -> np.ndarray:
     return ndtri(np.clip(u[:, 0], 1e-300, None))
 
 
+def _outsider(name: str) -> Subject:
+    (case,) = select([f"outsiders/{name}"])
+    found = case.make()
+    return Subject(found.sample, found.pdf, found.domain, found.dimensions, found.atoms)
+
+
+def _given_up() -> Subject:
+    """A cone of which a tenth is given up: labels under both conventions."""
+    found = select(["outsiders/lights/cone/8/0"])[0].make()
+    return Subject(lambda u: Draw(found.sample(u[:, :2]), valid=u[:, 2] < 0.9), found.pdf, found.domain, 3)
+
+
 SUBJECTS: dict[str, Callable[[], Subject]] = {
     "Henyey-Greenstein, g = 0.7": lambda: _directions(HenyeyGreenstein(0.7)),
     "Henyey-Greenstein, g = 0.95": lambda: _directions(HenyeyGreenstein(0.95)),
@@ -100,6 +114,20 @@ SUBJECTS: dict[str, Callable[[], Subject]] = {
     "two peaks of width 1e-4": _two_peaks,
     "weights": _weighted,
     "single precision": _single,
+    "the sun's disk": lambda: _outsider("lights/cone/0.2665/0"),
+    "environment map": lambda: _outsider("maps/sphere/64x128"),
+    "Poisson": lambda: _outsider("laws/poisson/17.3"),
+    "Pareto, index 0.3": lambda: _outsider("laws/pareto/0.3"),
+    "table of 1000 weights": lambda: _outsider("maps/table/1000"),
+    "a cone, a tenth given up": lambda: Subject(
+        *(lambda s: (s.sample, lambda x: 0.9 * s.pdf(x), s.domain, s.dimensions))(_given_up())
+    ),
+    "distance and direction": lambda: Subject(
+        lambda u: np.column_stack([-np.log1p(-u[:, 0]), Directions(Rayleigh()).sample(u[:, 1:]).x]),
+        lambda x: np.exp(-x[:, 0]) * Directions(Rayleigh()).pdf(x[:, 1:]),
+        Product(HalfLine(0), UnitSphere()),
+        3,
+    ),
     "die of forty": lambda: Subject(
         lambda u: np.floor(40 * u[:, 0]), lambda x: np.full(len(x), 1 / 40), Discrete(40), 1
     ),
@@ -189,7 +217,16 @@ class Tally:
 
 def kind_of(finding: Finding) -> str:
     """Return the kind of check, without the name of an axis or a channel."""
-    return re.sub(r" (of|in) (mu|phi|r|x|y|cdf of .*|channel \d+)$", "", finding.check)
+    name = re.sub(r"labels in \d+ cells", "labels in cells", finding.check)
+    return re.sub(r" (of|in) (mu|phi|r|r\^2|x|y|z|cdf of .*|the order of p\(x\)|channel \d+)$", "", name)
+
+
+def _reseeded(prepared: Prepared, seed: int) -> Prepared:
+    """Return the same cells with other points of the known law to mix samples with."""
+    mixture = prepared.counter.mixture
+    if mixture is None:
+        return prepared
+    return replace(prepared, counter=replace(prepared.counter, mixture=replace(mixture, seed=seed)))
 
 
 def sampler_tally(name: str, verdicts: int, samples: int, seed: int) -> Tally:
@@ -197,7 +234,7 @@ def sampler_tally(name: str, verdicts: int, samples: int, seed: int) -> Tally:
     check = SamplerCheck.of(SUBJECTS[name](), None, samples, LEVEL, seed)
     tally = Tally()
     for i in range(verdicts):
-        again = SamplerCheck(check.prepared, check.looks, LEVEL, seed + 1 + i, check.started)
+        again = SamplerCheck(_reseeded(check.prepared, seed + 1 + i), check.looks, LEVEL, seed + 1 + i, check.started)
         tally.add(again.run().findings)
     return tally
 

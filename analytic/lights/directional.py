@@ -32,6 +32,10 @@ from fogproof.scene.shapes import Shape
 SOURCE = "Beer's law along both ways, integrated"
 
 
+EDGE_ON = 1e-150
+"""Cosine below which light meets a face edge-on."""
+
+
 def beam(light: DirectionalLight, _ray: FlatRays, _exact: bool) -> Beam:
     """Return the light for quadrature along rays."""
     return Beam(travel=np.array(light.direction))
@@ -109,7 +113,7 @@ def _ways_back(shape: Shape, ray: FlatRays, travel: np.ndarray) -> tuple[np.ndar
         return np.empty((len(ray.origin), 0)), np.empty((len(ray.origin), 0)), np.empty((len(ray.origin), 0))
     normals, offsets = planes
     facing = -(normals @ travel)
-    entered = facing > 1e-150  # a face edge-on is infinitely far
+    entered = facing > EDGE_ON  # such a face is infinitely far, for all that is not on it
     normals, offsets, facing = normals[entered], offsets[entered], facing[entered]
     origin, d = ray.origin, ray.direction
     size = np.abs(origin).sum(axis=1)[:, None] + np.abs(offsets)
@@ -121,6 +125,24 @@ def _changes_of_face(shape: Shape, ray: FlatRays, travel: np.ndarray) -> np.ndar
     offset, slope, _ = _ways_back(shape, ray, travel)
     i, j = np.triu_indices(offset.shape[1], 1)
     return -(offset[:, i] - offset[:, j]) / (slope[:, i] - slope[:, j])
+
+
+def _may_be_on_a_face_edge_on(
+    shape: Shape, ray: FlatRays, travel: np.ndarray, start: np.ndarray, end: np.ndarray, owner: np.ndarray
+) -> np.ndarray:
+    """Return which pieces touch a face that the light meets all but edge-on: by rounding it may come in there, or not at all."""
+    planes = faces(shape)
+    assert planes is not None
+    normals, offsets = planes
+    facing = -(normals @ travel)
+    grazed = (facing > 0) & (facing <= EDGE_ON)
+    rooms = offsets[grazed] - ray.origin[owner] @ normals[grazed].T
+    speed = ray.direction[owner] @ normals[grazed].T
+    far = np.where(end < np.inf, end, start)
+    least = np.minimum(rooms - start[:, None] * speed, rooms - far[:, None] * speed)
+    size = np.abs(ray.origin[owner]).sum(axis=1)[:, None] + np.abs(offsets[grazed]) + np.abs(far)[:, None]
+    touches: np.ndarray = (least <= 32 * EPS * size).any(axis=1)
+    return touches
 
 
 def _polyhedron(
@@ -151,4 +173,7 @@ def _polyhedron(
     uncertain = 16 * EPS * (size + np.abs(slope * nearer) + np.abs(nearer))
     # The way may be shorter by that, which is a lot only where the light grazes a face.
     at_most = np.exp(-sigma * np.maximum(path - uncertain, 0.0)[:, None]) * reach
+    edge_on = _may_be_on_a_face_edge_on(shape, ray, travel, start, end, owner)
+    near = np.exp(-sigma * np.maximum(start - enter[owner], 0.0)[:, None])
+    at_most = np.where(edge_on[:, None], np.maximum(at_most, near * np.minimum(length[:, None], 1 / sigma)), at_most)
     return value, (at_most - value) + (np.minimum(sigma * uncertain[:, None], 1.0) + 16 * EPS) * value + TINY

@@ -38,7 +38,8 @@ def beam(light: SpotLight, ray: FlatRays, exact: bool) -> Beam:
         edges=edges(where, light),
         weight=partial(lit_by_cone, where, light),
         profile=partial(intensity_at, where, light),
-        gain=partial(falloff, where, light),
+        # An angle has a kink where a ray passes the axis, for which the airlight integral has no rule.
+        gain=None if light.profile == "linear" else partial(falloff, where, light),
     )
 
 
@@ -73,7 +74,12 @@ def edges(where: Placement, light: SpotLight) -> np.ndarray:
     delta = margin(where)
     outer, inner = _cosines(light)
     levels = [outer - delta, outer + delta] if inner == outer else [outer - delta, outer + 0 * delta, inner + 0 * delta]
-    return np.stack([t for level in levels for t in _crossings(where.h, A, B, level)], axis=1)
+    found = [t for level in levels for t in _crossings(where.h, A, B, level)]
+    if light.profile == "linear":
+        with np.errstate(all="ignore"):
+            closest = where.h * (where.h * B / A)  # to the axis, where the angle turns
+        found.append(np.where(np.isfinite(closest), closest, np.nan))
+    return np.stack(found, axis=1)
 
 
 def _crossings(h: np.ndarray, A: np.ndarray, B: np.ndarray, C: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -123,7 +129,11 @@ def intensity(light: SpotLight, cosine: np.ndarray) -> np.ndarray:
     """Return the intensity relative to the axis inside the cone."""
     outer, inner = _cosines(light)
     value = np.clip(cosine, 0.0, 1.0) ** light.exponent if light.exponent else np.ones_like(cosine)
-    if inner > outer:
+    if inner > outer and light.profile == "linear":
+        start = light.half_angle if light.falloff_start is None else light.falloff_start
+        angle = np.arccos(np.clip(cosine, -1.0, 1.0))
+        value = value * np.clip((light.half_angle - angle) / (light.half_angle - start), 0.0, 1.0)
+    elif inner > outer:
         x = np.clip((cosine - outer) / (inner - outer), 0.0, 1.0)
         value = value * (x * x * (3 - 2 * x))
     return value

@@ -35,7 +35,10 @@ def _in_the_cone(light: SpotLight, ray: Ray, s: np.ndarray) -> Illumination:
     edge = float(np.cos(light.half_angle))
     full = edge if light.falloff_start is None else float(np.cos(light.falloff_start))
     share = (cosine >= edge).astype(s.dtype)
-    if full > edge:
+    if light.profile == "linear" and light.falloff_start is not None and light.falloff_start < light.half_angle:
+        angle = np.arccos(np.clip(cosine, -1, 1))
+        share *= np.clip((light.half_angle - angle) / (light.half_angle - light.falloff_start), 0, 1)
+    elif full > edge:
         rise = np.clip((cosine - edge) / (full - edge), 0, 1)
         share *= rise * rise * (3 - 2 * rise)
     if light.exponent:

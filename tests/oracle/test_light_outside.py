@@ -115,3 +115,11 @@ def test_the_fallback_agrees_with_what_the_modules_know(light):
     value, error, _, _ = single_scattering_by_quadrature(medium, flat, light, shape, ())
     assert abs(float(value[0, 0]) - float(known.value)) <= float(error[0, 0]) + float(known.error)
     assert error[0, 0] < 1e-4 * value[0, 0]
+
+
+def test_a_ray_in_a_face_that_parallel_light_meets_edge_on():
+    """By one rounding more or less the light comes in where the ray is, or all the way through the box: the error says so."""
+    box, d = Box((-1, -2, -1.5), (2, 2, 1.5)), (1.0, -7e-246, 3e-50)
+    medium, ray, light = Medium(0.6, 0.3), Ray((1.0, 2.0, 1.5), d, 1.1), DirectionalLight(d, 3.0)
+    found, lit = single_scattering(medium, ray, light, shape=box), from_direction(medium, ray, light, (), box)
+    assert abs(float(found.value) - float(lit)) <= found.error

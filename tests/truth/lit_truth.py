@@ -71,6 +71,8 @@ def aimed(light, x):
     value = cosine**light.exponent
     start = light.half_angle if light.falloff_start is None else light.falloff_start
     if angle > start:
+        if light.profile == "linear":
+            return value * (light.half_angle - angle) / (mp.mpf(light.half_angle) - start)
         edge, full = mp.cos(light.half_angle), mp.cos(start)
         s = (cosine - edge) / (full - edge)
         value *= s * s * (3 - 2 * s)

@@ -76,7 +76,7 @@ class Prepared:
         """The integral of the pdf and a bound on its error; None where it is not known, and the labels judge it."""
         if self.claim is not None:
             return None if self.claim.doubt else (self.claim.leaves.total, self.claim.leaves.total_error)
-        if not self.counted:
+        if not (self.counted and isinstance(self.subject.domain, Discrete)):
             return None
         mass = self.subject.density(np.arange(self.grid.marginals[0].mass.size, dtype=np.float64))
         return float(mass.sum()), 4 * self.subject.roundoff * float(np.sum(np.abs(mass)))
@@ -225,10 +225,13 @@ def _by_labels(
         findings.append(sampled_integrals.mean_cosine(mixture))
     if subject.eval is not None and subject.albedo is not None:
         findings += sampled_integrals.albedo(mixture)
-    if subject.cdf is not None and claim is not None:
-        grid, count = _by_cdf(subject, claim, samples)
-        if len(claim.chart.axes) > 1:
-            findings.append(jacobian_agreement(subject, pilot.points))
+    axes = len(law.axes)
+    if subject.cdf is not None and axes > 1 and not law.stepped:
+        findings.append(jacobian_agreement(subject, pilot.points))
+    if subject.cdf is not None and (axes == 2 or claim is not None):
+        line = claim is not None and axes == 1
+        square = unit_square_grid((law.axes[0], law.axes[-1]), samples), partial(rosenblatt, subject)
+        grid, count = _by_cdf(subject, claim, samples) if claim is not None and line else square
         counter = _counter(subject, grid, count, None, pilot, mixture)
         return Prepared(subject, samples, pilot, claim, counter, tuple(findings), True)
 

@@ -7,6 +7,7 @@ alone could explain never rejects.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -17,7 +18,6 @@ from fogproof.checks.statistics.tails import (
     binomial_interval,
     chi_square_above,
     gamma_above,
-    normal_quantile,
 )
 from fogproof.checks.verdict import Finding, Interval, Outcome, Resolution
 
@@ -217,8 +217,7 @@ def binomial(name: str, what: str, count: int, n: int, low: float, high: float, 
     p = binomial_p(count, n, low, high)
     share = count / n
     centre = 0.5 * (low + high)
-    spread = math.sqrt(max(centre * (1 - centre), 1 / n) / n)
-    resolution = Resolution(f"error of {what}", (normal_quantile(alpha / 2) + normal_quantile(MISS)) * spread, MISS)
+    resolution = Resolution(f"error of {what}", binomial_resolution(n, low, high, alpha), MISS)
     message = f"{what} is {centre:.6g}, observed {share:.6g} ({count} of {n})"
     rejected = p <= alpha
     ends = binomial_interval(count, n, MISS)
@@ -235,6 +234,29 @@ def binomial(name: str, what: str, count: int, n: int, low: float, high: float, 
         interval=Interval(ends[0] - centre, ends[1] - centre, 1 - MISS),
         cause=cause if rejected else "",
     )
+
+
+def binomial_resolution(n: int, low: float, high: float, alpha: float) -> float:
+    """Return by how much a probability must differ from the middle of [low, high] to be rejected, but for `MISS`: exact.
+
+    The least count above and the greatest below that are rejected are searched, and the probabilities that reach them.
+    """
+    from scipy.special import betaincinv
+
+    centre = 0.5 * (low + high)
+    least = _first(lambda k: binomial_at_least(k, n, min(high, 1.0)) <= alpha / 2, 0, n + 1)
+    most = _first(lambda k: binomial_at_most(k, n, max(low, 0.0)) > alpha / 2, 0, n + 1) - 1
+    up = float(betaincinv(least, n - least + 1, 1 - MISS)) - centre if least <= n else 0.0
+    down = centre - float(betaincinv(most + 1, n - most, MISS)) if most >= 0 else 0.0
+    return max(up, down) if max(up, down) > 0 else 1.0
+
+
+def _first(good: Callable[[int], bool], low: int, high: int) -> int:
+    """Return the first whole number in [low, high) from which on `good` holds, `high` if there is none."""
+    while low < high:
+        middle = (low + high) // 2
+        low, high = (low, middle) if good(middle) else (middle + 1, high)
+    return low
 
 
 def binomial_p(count: int, n: int, low: float, high: float) -> float:

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -132,7 +132,8 @@ def levels(name: str, sums: tuple[Sums, ...], alpha: float) -> Finding:
 
 def _convention(findings: list[Finding]) -> Finding:
     """Return the finding under the convention that fits best: the claim is right if one of them is."""
-    return max(findings, key=lambda f: 1.0 if f.p_value is None else f.p_value)
+    best = max(findings, key=lambda f: 1.0 if f.p_value is None else f.p_value)
+    return replace(best, exact=best.exact and len(findings) == 1)
 
 
 def _folded(cells: np.ndarray, depth: int) -> np.ndarray:

@@ -56,7 +56,9 @@ def scan(name: str, marginal: Marginal, counts: np.ndarray, alpha: float) -> Fin
         place = _Place(p, int(start[i]), int(start[i]) + length, int(observed[i]), mass)
         best = place if place.beats(best, n) else best
     rivals = 2 * len(counts) * len(lengths)
-    resolution = Resolution(f"missing band in {marginal.label}", _smallest_band(n, alpha / rivals, len(counts)), MISS)
+    unseen = 2 * float(np.max(marginal.error + marginal.blur))
+    band = _smallest_band(n, alpha / rivals, len(counts)) + 3 * unseen
+    resolution = Resolution(f"missing band in {marginal.label}", min(band, 1.0), MISS)
     return _finding(name, best, n, alpha, between(marginal, best.first, best.last), resolution, len(counts), True)
 
 
