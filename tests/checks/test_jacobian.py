@@ -99,4 +99,4 @@ def test_samples_are_held_against_the_pdf_although_a_cdf_is_given():
     assert check_sampler(sample, henyey_greenstein(0.7)[1], UnitSphere(), **options).outcome == "not rejected"
     verdict = check_sampler(sample, henyey_greenstein(0.8)[1], UnitSphere(), **options)
     assert verdict.outcome == "rejected"
-    assert verdict.cause == "wrong formula"
+    assert verdict.cause == "another parameter"

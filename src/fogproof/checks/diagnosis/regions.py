@@ -50,6 +50,8 @@ def _along(axis: int, low: float, high: float) -> Iterator[Hypothesis]:
         y[:, axis] = column
         return y
 
+    if not np.isfinite([low, high]).all():
+        return
     yield Hypothesis(
         "sign convention",
         f"these samples fit the pdf with axis {axis} turned round",
