@@ -11,7 +11,7 @@ A method is a frozen dataclass whose fields are its options in the study file, w
     variance    scene -> the exact variance of one realisation as a `Reference`, or None where the oracle has none
     dimensions  uniforms a realisation if it is a pure function of them, which then can be Sobol points; else None
 
-To add one, write such a class and name it in `METHODS`.
+To add one, write such a class and name it in `METHODS`; an estimator of one's own needs neither, see `own`.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from fogproof.contracts import Estimator, Reference
 from fogproof.scene.kinds import ByKind
 from fogproof.study.methods.airlight import Light, MarchedLight, MixedLight
 from fogproof.study.methods.fog import AnalogFogMethod, CertainCollision
+from fogproof.study.methods.own import Own
 from fogproof.study.methods.paths import PathTracing
 from fogproof.study.methods.transmittance import Analog, Delta, March, Ratio, Regular, ResidualRatio
 
@@ -68,16 +69,23 @@ METHODS: dict[str, type] = {
 }
 """The `kind` of each method in study files."""
 
-MethodField = Annotated[Any, ByKind(METHODS)]
+OWN = "module:Estimator"
+"""The `kind` that a study's normalised text gives to an estimator of one's own."""
+
+MethodField = Annotated[Any, ByKind({**METHODS, OWN: Own})]
 
 
 def kind_of(method: Any) -> str:
     """Return the `kind` of a method."""
+    if isinstance(method, Own):
+        return method.source
     return next(kind for kind, cls in METHODS.items() if type(method) is cls)
 
 
 def options_of(method: Any) -> dict[str, Any]:
     """Return the options of a method that are not the defaults."""
+    if isinstance(method, Own):
+        return method.options
     return {f.name: getattr(method, f.name) for f in fields(method) if getattr(method, f.name) != f.default}
 
 
