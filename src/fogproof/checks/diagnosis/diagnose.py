@@ -123,10 +123,9 @@ def _best(setting: Setting, base: Fit, hypotheses: list[Hypothesis]) -> Explaine
     for score, order, hypothesis, value, room in tried[:_TRIED]:
         if hypothesis.trials:
             value, score = _fitted(middle, hypothesis, value - room, value + room, 12)
-            score -= 0.5 * math.log(len(middle.contrast.x))
         else:
             score = _likelihood(middle, hypothesis, value)
-        closer.append((score, order, hypothesis, value, 0.3 * room))
+        closer.append((score - hypothesis.price(len(middle.contrast.x)), order, hypothesis, value, 0.3 * room))
     closer.sort(key=lambda one: one[:2], reverse=True)
     found = []
     for _, order, hypothesis, value, room in closer[:_KEPT]:
@@ -136,7 +135,7 @@ def _best(setting: Setting, base: Fit, hypotheses: list[Hypothesis]) -> Explaine
             error = _error(setting, hypothesis, value, room)
         fit = setting.contrast.fit(hypothesis.density(setting, value)(setting.contrast.points))
         share = 1 - max(fit.left - 2 * math.sqrt(2 * fit.freedom), 0.0) / base.left
-        score = fit.likelihood - (0.5 * math.log(n) if hypothesis.trials else 0.0)
+        score = fit.likelihood - hypothesis.price(n)
         found.append((score + 1.5 * order / len(hypotheses), order, Explained(hypothesis, value, error, fit, share)))
     return max(found, key=lambda one: one[:2])[2] if found else None
 
