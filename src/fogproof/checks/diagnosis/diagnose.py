@@ -19,7 +19,7 @@ from fogproof.checks.verdict import Finding
 from fogproof.domains import Discrete, HalfLine, Interval, RealLine, UnitHemisphere, UnitSphere
 from fogproof.errors import FogproofError
 
-_STATISTICAL = {"shape", "skipped band", "missing tail", "missing patch", "sign convention", "atom", "correlation"}
+_STATISTICAL = {"shape", "skipped band", "missing tail", "missing patch", "sign convention", "correlation"}
 _CONSTANT = {"normalisation", "wrong measure"}
 _SYMPTOMS = {"wrong pdf returned", "wrong weight", "edge of the uniforms"}  # that a wrong law brings along
 _SIZES = (1 << 14, 1 << 16, 1 << 18)  # samples: as few as show the misfit plainly
