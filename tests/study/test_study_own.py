@@ -17,7 +17,7 @@ MINE = """
         dimensions = 1
 
         def __init__(self, scene, scale=1.0):
-            self.tau = (scene.matter.sigma_a + scene.matter.sigma_s) * float(scene.ray.length)
+            self.tau = (scene.built_medium.sigma_a + scene.built_medium.sigma_s) * float(scene.ray.length)
             self.scale = scale
             p = np.exp(-self.tau)
             self.variance = (scale * FACTOR) ** 2 * p * (1 - p)

@@ -17,19 +17,10 @@ import numpy as np
 
 from fogproof.errors import InvalidInputError, InvalidValueError, shorten
 from fogproof.scene.files import read_fields
-<<<<<<< HEAD
-from fogproof.scene.lights import LightField
-from fogproof.scene.occluders import OccluderField
-from fogproof.scene.shapes import ShapeField, Unbounded
-from fogproof.study.media import StudyMedium, built, sha256_of
-from fogproof.study.methods.paths import radiance_of_ball
+from fogproof.study.media import sha256_of
 from fogproof.study.methods.table import OWN, MethodField
 from fogproof.study.own_code import NAME, digest_of
-=======
-from fogproof.study.media import sha256_of
-from fogproof.study.methods.table import MethodField
 from fogproof.study.question import Question
->>>>>>> main
 from fogproof.validate import number
 
 LARGEST_COUNT = 1 << 40

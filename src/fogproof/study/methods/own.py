@@ -1,8 +1,7 @@
 """One's own estimator in a study: `kind = "my_module:Estimator"`, every further key an option of it.
 
 The module lies beside the study file or is installed. The class, or a function that returns an estimator, is called as
-`Estimator(scene, **options)`, where `scene` is a `StudyScene`: `scene.matter` is the medium, `scene.ray`, `scene.light`,
-`scene.ambient`, … the rest. What it makes has
+`Estimator(scene, **options)`; the scene is a `Question`, with `built_medium`, `ray`, `light`, `ambient`, …. What it makes has
 
     draw       (rng, n) -> (n,) independent realisations of the scene's quantity, or `Draws` with their cost; all chance comes
                from rng, the workers' threads may call it at the same time
@@ -12,7 +11,7 @@ and the class itself may have
 
     title       how it is called in words; "my_module:Estimator" without one
     dimensions  uniforms a realisation, if `draw` is a pure function of rng.random((n, dimensions)): Sobol points are tried then
-    expected    "rejected" for one that is biased by construction, and `reason` says why
+    bias        why its mean is not the quantity, in words, if it is biased by construction
 
 The sources of the module, and of what it imports from the same place, belong to what identifies the study's batches.
 """
@@ -20,20 +19,19 @@ The sources of the module, and of what it imports from the same place, belong to
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from fogproof.contracts import Draws, Reference
 from fogproof.errors import FogproofError, InvalidInputError, SubjectError
+from fogproof.study.methods.method import Method
 from fogproof.study.own_code import digest_of, loaded
-
-if TYPE_CHECKING:
-    from fogproof.study.files import StudyScene
+from fogproof.study.question import Question
 
 
 @dataclass(frozen=True)
-class Own:
+class Own(Method):
     """An estimator of somebody else's.
 
     source   "module:Estimator"
@@ -46,14 +44,13 @@ class Own:
     sha256: str
     options: dict[str, Any] = field(default_factory=dict)
     folder: str = ""
-    quantity: ClassVar[None] = None
-    axis: ClassVar[str] = "samples"
+    quantity: ClassVar[Any] = None
 
-    def make(self, scene: StudyScene, count: int) -> Any:
+    def make(self, scene: Question, count: int) -> Any:
         """Return the estimator, which answers for what it draws."""
         return _Answering(self.source, self._made(scene))
 
-    def variance(self, scene: StudyScene) -> Reference | None:
+    def variance(self, scene: Question) -> Reference | None:
         """Return what it says its variance is, if anything."""
         said = getattr(self._made(scene), "variance", None)
         return None if said is None else Reference.of("variance", said)
@@ -66,25 +63,16 @@ class Own:
     @property
     def dimensions(self) -> int | None:
         """Uniforms a realisation, None if it does not say."""
-        return self._declared("dimensions", None, lambda d: isinstance(d, int) and d > 0, "a whole number > 0, or None")
-
-    @property
-    def expected(self) -> str:
-        """Whether it is known to be biased."""
-        outcomes = ("not rejected", "rejected")
-        said: str = self._declared("expected", outcomes[0], outcomes.__contains__, " or ".join(map(repr, outcomes)))
+        said = getattr(self._maker(), "dimensions", None)
+        if said is not None and not (isinstance(said, int) and said > 0):
+            what = f"{self.source}: dimensions must be a whole number > 0, or None, got {said!r}"
+            raise InvalidInputError(what, "dimensions")
         return said
 
     @property
-    def reason(self) -> str:
-        """Why it is biased."""
-        return str(getattr(self._maker(), "reason", ""))
-
-    def _declared(self, name: str, default: Any, good: Any, rule: str) -> Any:
-        said = getattr(self._maker(), name, default)
-        if said is not default and not good(said):
-            raise InvalidInputError(f"{self.source}: {name} must be {rule}, got {said!r}", name)
-        return said
+    def bias(self) -> str:
+        """Why it is biased, "" if it should not be."""
+        return str(getattr(self._maker(), "bias", ""))
 
     def _maker(self) -> Any:
         module, _, name = self.source.partition(":")
@@ -96,7 +84,7 @@ class Own:
             raise InvalidInputError(f"{self.source}: {name} {what} in the module {module}", self.source)
         return maker
 
-    def _made(self, scene: StudyScene) -> Any:
+    def _made(self, scene: Question) -> Any:
         try:
             made = self._maker()(scene, **self.options)
         except FogproofError:

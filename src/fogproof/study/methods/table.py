@@ -1,22 +1,4 @@
-<<<<<<< HEAD
-"""The estimators a study can measure: how each is made for a scene, and what the oracle knows of its variance.
-
-A method is a frozen dataclass whose fields are its options in the study file, with
-
-    quantity    what it estimates; a scene takes the methods of its own quantity
-    title       in words
-    axis        what the study's sample counts are to it: "samples" of a random estimator, "steps" of a march that is not
-                random, or "nothing" for an exact one
-    expected    "rejected" for one that is biased by construction, and `reason` says why
-    make        (scene, count) -> an `Estimator`
-    variance    scene -> the exact variance of one realisation as a `Reference`, or None where the oracle has none
-    dimensions  uniforms a realisation if it is a pure function of them, which then can be Sobol points; else None
-
-To add one, write such a class and name it in `METHODS`; an estimator of one's own needs neither, see `own`.
-"""
-=======
-"""The estimators a study can measure. To add one, write a class of `Method` and name it in `METHODS`."""
->>>>>>> main
+"""The estimators a study can measure. To add one, write a class of `Method` and name it in `METHODS`; for one's own see `own`."""
 
 from __future__ import annotations
 
@@ -26,11 +8,8 @@ from typing import Annotated, Any
 from fogproof.scene.kinds import ByKind
 from fogproof.study.methods.airlight import MarchedSingleScattering, MixedSingleScattering, SingleScattering
 from fogproof.study.methods.fog import AnalogFogMethod, CertainCollision
-<<<<<<< HEAD
-from fogproof.study.methods.own import Own
-=======
 from fogproof.study.methods.method import Method
->>>>>>> main
+from fogproof.study.methods.own import Own
 from fogproof.study.methods.paths import PathTracing
 from fogproof.study.methods.transmittance import (
     Analog,
