@@ -136,6 +136,11 @@ def levy_pdf(x):
 
 SOUND = {
     "density 0 to every order at its edge": (levy, levy_pdf, HalfLine(0), 1),
+    "a limit that is approached very slowly": (
+        lambda u: np.maximum(-np.log(np.maximum(u[:, 0], 5e-324)), 1e-300) ** -0.1 * (u[:, 0] > 0),
+        lambda x: 10 * np.exp(-np.maximum(x, 1e-20) ** -10) * np.maximum(x, 1e-20) ** -11, HalfLine(0), 1),
+    "the same where 1 - u is 1": (
+        lambda u: levy(1 - (1 - u)), levy_pdf, HalfLine(0), 1),
     "the same at the upper end": (
         lambda u: 1 / (1 + levy(u)), lambda y: levy_pdf(1 / y - 1) / y**2, UNIT, 1),
     "beside a second coordinate": (
@@ -197,3 +202,25 @@ def sphere(u):
 def test_the_sphere_has_edges_too():
     verdict = check_sampler(sphere, lambda x: np.full(len(x), 0.25 / np.pi), UnitSphere(), dimensions=2, samples=20_000)
     assert verdict.outcome == "not rejected", str(verdict)
+
+
+@pytest.mark.parametrize(("g", "precision"), [(0.99, "float64"), (0.999, "float64"), (0.9, "float32")])
+def test_a_textbook_cosine_may_leave_its_range_by_rounding_but_a_length_may_not_be_wrong(g, precision):
+    """1 + g^2 - s^2 loses digits in a narrow lobe: mu = -1 - 2e-15 for g = 0.99, which is the same direction."""
+
+    def scattered(u):
+        kind = u.dtype.type
+        s = (kind(1) - kind(g * g)) / (kind(1) - kind(g) + kind(2 * g) * u[:, 0])
+        mu, phi = (kind(1 + g * g) - s * s) / kind(2 * g), kind(2 * np.pi) * u[:, 1]
+        sine = np.sqrt(np.maximum(kind(1) - mu * mu, kind(0)))
+        return np.stack([sine * np.cos(phi), sine * np.sin(phi), mu], axis=-1)
+
+    def pdf(x):
+        return (1 - g * g) / (4 * np.pi * ((1 - g) ** 2 + g * np.sum((x - [0, 0, 1]) ** 2, axis=-1)) ** 1.5)
+
+    arguments = {"dimensions": 2, "samples": 20_000, "precision": precision}
+    verdict = check_sampler(scattered, pdf, UnitSphere(), **arguments)
+    assert verdict.outcome != "rejected", str(verdict)
+    off = 1e-6 if precision == "float64" else 1e-2
+    verdict = check_sampler(lambda u: scattered(u) * u.dtype.type(1 + off), pdf, UnitSphere(), **arguments)
+    assert "domain" in {f.check for f in verdict.findings if f.outcome == "rejected"}
