@@ -1,4 +1,4 @@
-"""Invariant: a surface at the camera leaves its radiance alone: T = 1, nothing is emitted, nothing scattered in, whoever is asked."""
+"""Invariant: a surface at the camera leaves its radiance alone: T = 1, nothing emitted, nothing scattered in, whoever is asked."""
 
 import numpy as np
 import pytest
