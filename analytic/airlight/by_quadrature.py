@@ -21,6 +21,7 @@ from fogproof.analytic.airlight.lit_pieces import Pieces, from_light, lit_pieces
 from fogproof.analytic.airlight.ray_and_light import meets_light
 from fogproof.analytic.airlight.result import Result
 from fogproof.analytic.arithmetic.adaptive_panels import Look, integrate_panels
+from fogproof.analytic.arithmetic.budget import budget
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.analytic.geometry.convex_shapes import changes_of_face, contains
 from fogproof.analytic.geometry.flat_rays import FlatRays
@@ -50,7 +51,7 @@ def single_scattering_by_quadrature(
     beam_of, rule = given(light, ROOM, "beam"), given(light, ROOM, "incident")
     if beam_of is None and rule is None:
         raise UnsupportedError(f"single scattering of a {type(light).__name__} is not known", "light")
-    with np.errstate(all="ignore"):
+    with np.errstate(all="ignore"), budget(len(ray.length)):
         if beam_of is not None:
             beam: Beam = beam_of(light, ray, exact)
             if is_uniform(medium) and beam.where is not None:

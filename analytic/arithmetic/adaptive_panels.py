@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fogproof.analytic.arithmetic.budget import may_refine, of_bounded_variation
 from fogproof.analytic.arithmetic.error_free import EPS
 from fogproof.analytic.arithmetic.panel_rule import NODES, WEIGHTS
 
@@ -29,7 +30,10 @@ WIDEST, FIRST = 4.0, 32
 
 
 class Panels(NamedTuple):
-    """Parts of pieces, from `low` over `width` of their variable, (p,), with value and errors, (p, channels)."""
+    """Parts of pieces, from `low` over `width` of their variable, (p,), with value and errors, (p, channels).
+
+    variation  sum of |differences| between neighbouring nodes, (p, channels)
+    """
 
     piece: np.ndarray
     low: np.ndarray
@@ -37,6 +41,7 @@ class Panels(NamedTuple):
     value: np.ndarray
     noise: np.ndarray
     off: np.ndarray
+    variation: np.ndarray
 
 
 Look = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
@@ -60,8 +65,12 @@ def integrate_panels(
     panels = _evaluate(look, piece, step * width, width)
     done = Panels(*(x[:0] for x in panels))
     totals = np.zeros((count, panels.value.shape[1]))
-    for _ in range(ROUNDS):
+    for turn in range(ROUNDS):
         if not len(panels.piece):
+            break
+        if turn and not may_refine():
+            rough = of_bounded_variation(panels.width[:, None], panels.variation)
+            panels = panels._replace(off=np.maximum(panels.off, rough))
             break
         half = panels.width / 2
         left = _evaluate(look, panels.piece, panels.low, half)
@@ -92,6 +101,7 @@ def _evaluate(look: Look, piece: np.ndarray, low: np.ndarray, width: np.ndarray)
         block = slice(i, i + BLOCK)
         f, noise = look(piece[block], low[block, None] + width[block, None] * NODES)
         scale = width[block, None]
-        found.append((scale * np.einsum("k,pkc->pc", WEIGHTS, f), scale * np.einsum("k,pkc->pc", WEIGHTS, noise)))
-    value, noise = (np.concatenate(x) for x in zip(*found, strict=True))
-    return Panels(piece, low, width, value, noise, np.zeros_like(value))
+        sums = (scale * np.einsum("k,pkc->pc", WEIGHTS, x) for x in (f, noise))
+        found.append((*sums, np.abs(np.diff(f, axis=1)).sum(axis=1)))
+    value, noise, variation = (np.concatenate(x) for x in zip(*found, strict=True))
+    return Panels(piece, low, width, value, noise, np.zeros_like(value), variation)

@@ -17,6 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fogproof.analytic.arithmetic.budget import afford, budget, may_refine, of_bounded_variation
 from fogproof.analytic.arithmetic.error_free import EPS, TINY, two_sum
 from fogproof.analytic.arithmetic.panel_rule import NODES, RUNNING, WEIGHTS
 from fogproof.analytic.geometry.rays import Thickness
@@ -117,10 +118,23 @@ def integrate_along(
         return Panels(*(np.concatenate(columns) for columns in zip(*found, strict=True)))
 
     count = len(origin)
-    panels = evaluate(*_first(medium, ray))
+    with budget(count):
+        panels = _refined(evaluate, evaluate(*_first(medium, ray)), count, tolerance)
+    return _compose(panels, count, np.max(np.abs(origin), axis=-1, initial=0.0))
+
+
+Evaluate = Callable[[np.ndarray, np.ndarray, np.ndarray], Panels]
+"""(rays (p,), starts (p,), widths (p,)) -> panels."""
+
+
+def _refined(evaluate: Evaluate, panels: Panels, count: int, tolerance: float) -> Panels:
+    """Return panels in place of these that hold their share of the error, as far as the budget goes."""
     done = panels._replace(**{name: column[:0] for name, column in panels._asdict().items()})
-    for _ in range(ROUNDS):
+    for turn in range(ROUNDS):
         if not len(panels.ray):
+            break
+        if turn and not may_refine():
+            panels = _left_undone(panels)
             break
         half = panels.width / 2
         left = evaluate(panels.ray, panels.start, half)
@@ -133,7 +147,7 @@ def integrate_along(
         bad = _too_wrong(everything, count, tolerance)
         panels = Panels(*(column[bad] for column in everything))
         done = Panels(*(column[~bad] for column in everything))
-    return _compose(_join(done, panels), count, np.max(np.abs(origin), axis=-1, initial=0.0))
+    return _join(done, panels)
 
 
 def _first(medium: AnyMedium, ray: Ray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -144,7 +158,9 @@ def _first(medium: AnyMedium, ray: Ray) -> tuple[np.ndarray, np.ndarray, np.ndar
     start, width = edges[which, column], widths[which, column]
     detail = getattr(medium, "detail", np.inf)
     pieces = FIRST if given(medium, ROOM, "thickness") is None or hasattr(medium, "detail") else 1
-    parts = np.maximum(pieces, np.ceil(width / detail)).astype(int)
+    parts = np.maximum(pieces, np.ceil(width / detail))
+    afford(len(NODES) * np.bincount(which, parts).max(initial=0.0))
+    parts = parts.astype(int)
     owner = np.repeat(np.arange(len(parts)), parts)
     step = np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts)
     share = width[owner] / parts[owner]
@@ -189,6 +205,16 @@ def _too_wrong(panels: Panels, count: int, tolerance: float) -> np.ndarray:
         bad |= glows & (panels.tau > THICK) & (seen > UNSEEN)
     bad = bad.reshape(len(bad), -1).any(axis=-1)
     return bad & (number[rays] < PANELS) & (panels.width > 4 * EPS * (panels.start + panels.width))
+
+
+def _left_undone(panels: Panels) -> Panels:
+    """Return the panels with the errors that their nodes allow, where no halves say how wrong they are."""
+    width = panels.width.reshape(-1, *[1] * (panels.tau.ndim - 1))
+    brightest = panels.ends[..., 1, 0] + panels.jumps[..., 1]
+    tau_error = np.maximum(panels.tau_error, of_bounded_variation(width, panels.jumps[..., 0]))
+    dimmed = np.minimum(panels.tau + tau_error, 1.0)
+    rough = of_bounded_variation(width, panels.jumps[..., 1] + brightest * dimmed) + width * brightest * tau_error
+    return panels._replace(tau_error=tau_error, gain_error=np.maximum(panels.gain_error, rough))
 
 
 def _starts(rays: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple, TypeGuard
 
 import numpy as np
 
+from fogproof.analytic.arithmetic.budget import spend
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.analytic.declaration import quantity
 from fogproof.contracts import Reference
@@ -109,6 +110,7 @@ def coefficients(medium: AnyMediumField, x: PointArray, w: PointArray, channels:
     if own is None:
         raise UnsupportedError(f"the oracle does not know the coefficients of a {type(medium).__name__}", "medium")
     x, w = np.broadcast_arrays(np.asarray(x, float), np.asarray(w, float))
+    spend(x.size // 3)
     channels = medium.channels if channels is None else channels
     place = x if channels is None else x[..., None, :]
     shape = x.shape[:-1] if channels is None else (*x.shape[:-1], channels)

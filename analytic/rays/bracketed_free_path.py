@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from fogproof.analytic.arithmetic.budget import budget
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.analytic.media.breakpoints import extent
 from fogproof.analytic.media.thickness import thickness
@@ -39,7 +40,7 @@ def bracketed_free_path(medium: AnyMedium, ray: Ray, tau: np.ndarray, channels: 
         value, error = _up_to(medium, ray, rows, t, channels)
         return value + error < wanted, value - error >= wanted
 
-    with np.errstate(over="ignore", invalid="ignore", under="ignore"):
+    with np.errstate(over="ignore", invalid="ignore", under="ignore"), budget(len(enter)):
         below, beyond = sure(high)
         if np.isinf(high).any():
             high = _reached(sure, low, high, beyond)

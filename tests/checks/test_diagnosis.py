@@ -85,3 +85,18 @@ def test_a_right_sampler_has_no_cause():
 ])  # fmt: skip
 def test_a_constant_is_named_only_where_it_is_pinned(value, error, name):
     assert named_factor(value, error, {"the albedo": 0.6}) == name
+
+
+def test_the_line_that_reproduces_a_verdict_runs():
+    import fogproof
+
+    def sample(u):
+        return np.where(u[:, 0] < 0.3, 1.0, u[:, 0])
+
+    def pdf(x):
+        return np.full(len(x), 0.8)
+
+    verdict = check_sampler(sample, pdf, Interval(0, 1), dimensions=1, atoms={1.0: 0.2}, samples=5000)
+    again = eval(verdict.reproduce, {**vars(fogproof), "check_sampler": check_sampler, "sample": sample, "pdf": pdf})
+    assert verdict.outcome == "rejected"
+    assert [(f.check, f.p_value) for f in again.findings] == [(f.check, f.p_value) for f in verdict.findings]

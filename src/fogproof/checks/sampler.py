@@ -185,9 +185,8 @@ class SamplerCheck:
             "looks": [look.samples for look in self.looks],
         }
         reproduce = (
-            f"check_sampler({_name(subject.sample)}, {_name(subject.pdf)}, {subject.domain!r},"
-            f" dimensions={subject.dimensions}, ..., samples={self.prepared.samples}, alpha={self.alpha:g},"
-            f" seed={self.seed})"
+            f"check_sampler(sample, pdf, {subject.domain!r}, dimensions={subject.dimensions}{_options(subject)},"
+            f" samples={self.prepared.samples}, alpha={self.alpha!r}, seed={self.seed})"
         )
         seconds = time.perf_counter() - self.started
         pilot = self.prepared.pilot
@@ -229,5 +228,10 @@ def _illustrated(prepared: Prepared, tally: Tally, findings: list[Finding]) -> l
     return shown
 
 
-def _name(function: Any) -> str:
-    return getattr(function, "__qualname__", type(function).__name__)
+def _options(subject: Subject) -> str:
+    """Return what else was declared, as arguments of a call; functions go by the names of their arguments."""
+    functions = [f", {name}={name}" for name in ("cdf", "eval", "reference") if getattr(subject, name) is not None]
+    names = ("atoms", "axis", "mean_cosine", "albedo", "events", "uniform_bits", "quasi_random")
+    values = [f", {name}={getattr(subject, name)!r}" for name in names if getattr(subject, name)]
+    precision = [f", precision={subject.precision!r}"] if subject.precision != "float64" else []
+    return "".join(functions + values + precision)

@@ -19,7 +19,7 @@ from fogproof.checks.verdict import Finding
 from fogproof.domains import Discrete, HalfLine, Interval, RealLine, UnitHemisphere, UnitSphere
 from fogproof.errors import FogproofError
 
-_STATISTICAL = {"shape", "skipped band", "missing tail", "missing patch", "sign convention", "atom", "correlation"}
+_STATISTICAL = {"shape", "skipped band", "missing tail", "missing patch", "sign convention", "correlation"}
 _CONSTANT = {"normalisation", "wrong measure"}
 _SYMPTOMS = {"wrong pdf returned", "wrong weight", "edge of the uniforms"}  # that a wrong law brings along
 _SIZES = (1 << 14, 1 << 16, 1 << 18)  # samples: as few as show the misfit plainly
@@ -123,10 +123,9 @@ def _best(setting: Setting, base: Fit, hypotheses: list[Hypothesis]) -> Explaine
     for score, order, hypothesis, value, room in tried[:_TRIED]:
         if hypothesis.trials:
             value, score = _fitted(middle, hypothesis, value - room, value + room, 12)
-            score -= 0.5 * math.log(len(middle.contrast.x))
         else:
             score = _likelihood(middle, hypothesis, value)
-        closer.append((score, order, hypothesis, value, 0.3 * room))
+        closer.append((score - hypothesis.price(len(middle.contrast.x)), order, hypothesis, value, 0.3 * room))
     closer.sort(key=lambda one: one[:2], reverse=True)
     found = []
     for _, order, hypothesis, value, room in closer[:_KEPT]:
@@ -136,7 +135,7 @@ def _best(setting: Setting, base: Fit, hypotheses: list[Hypothesis]) -> Explaine
             error = _error(setting, hypothesis, value, room)
         fit = setting.contrast.fit(hypothesis.density(setting, value)(setting.contrast.points))
         share = 1 - max(fit.left - 2 * math.sqrt(2 * fit.freedom), 0.0) / base.left
-        score = fit.likelihood - (0.5 * math.log(n) if hypothesis.trials else 0.0)
+        score = fit.likelihood - hypothesis.price(n)
         found.append((score + 1.5 * order / len(hypotheses), order, Explained(hypothesis, value, error, fit, share)))
     return max(found, key=lambda one: one[:2])[2] if found else None
 

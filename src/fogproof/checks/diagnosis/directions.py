@@ -107,7 +107,7 @@ def _frames(setting: Setting) -> Iterator[Hypothesis]:
     degrees = float(np.degrees(np.arctan2(np.linalg.norm(np.cross(a, b)), a @ b)))
     lean = ", ".join(f"{c:.3f}" for c in b)
     words = f"these samples fit the pdf in another frame: turned by {degrees:.3g} degrees, towards ({lean})"
-    yield Hypothesis("rotated frame", words, lambda s, _: lambda x: s.p(x @ back.T))
+    yield Hypothesis("rotated frame", words, lambda s, _: lambda x: s.p(x @ back.T), fitted=2)
 
 
 def _turn(a: np.ndarray, b: np.ndarray) -> np.ndarray:

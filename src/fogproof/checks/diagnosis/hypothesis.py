@@ -64,6 +64,7 @@ class Hypothesis:
     words    the explanation as a sentence about "these samples"; {value} stands for the fitted parameter
     density  (setting, parameter) -> the density that the samples would have, known up to a constant
     trials   values of the parameter to begin with, in order; () if there is none
+    fitted   how many parameters were taken from the samples beforehand
     named    parameter -> what it is better known as, "" if it is nothing special
     """
 
@@ -72,6 +73,11 @@ class Hypothesis:
     density: Callable[[Setting, float], Density]
     trials: tuple[float, ...] = ()
     named: Callable[[float, float], str] = field(default=lambda value, error: "")
+    fitted: int = 0
+
+    def price(self, n: int) -> float:
+        """Return what the parameters cost on n samples, in log-likelihood (Schwarz 1978)."""
+        return 0.5 * math.log(n) * (bool(self.trials) + self.fitted)
 
     def said(self, value: float, error: float) -> str:
         """Return the explanation with the fitted parameter and its standard error."""
