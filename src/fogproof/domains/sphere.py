@@ -11,7 +11,9 @@ import numpy as np
 from fogproof.domains.law import Law, squared
 
 TURN = 2 * np.pi
-_LENGTH = 256  # slacks: mu of a lobe with g = 0.999 from its textbook formula is off by so much, and a length is no place
+_LENGTH = (
+    256  # slacks: mu of a lobe with g = 0.999 from its textbook formula is off by so much, and a length is no place
+)
 
 
 def azimuth(x: np.ndarray, y: np.ndarray) -> np.ndarray:
