@@ -65,7 +65,6 @@ def check_bound(
     law = domain.law(np.empty((0, *domain.shape)))
     limit = 0.0 if callable(bound) else number("bound", bound, "must be >= 0", 0)
     slack = 16 * UNIT_ROUNDOFF[precision]
-    nothing = 0.0 if callable(bound) or limit > 0 else 1.0  # a majorant of 0 is attained by emptiness
 
     def quotient(u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         x = law.place(u)
@@ -76,7 +75,7 @@ def check_bound(
                 if callable(bound)
                 else np.full(len(x), limit)
             )
-            ratio = np.where(top > 0, value / top, np.where(value > top, np.inf, nothing))
+            ratio = np.where(top > 0, value / top, np.where(value > top, np.inf, 0.0))
         known = ~(np.isnan(value) | np.isnan(top) | np.isposinf(value))
         return np.where(known, ratio, np.inf), value, x
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
@@ -16,6 +17,7 @@ from fogproof.checks.statistics.dependence import repeated_stretches, repeats_wi
 from fogproof.checks.statistics.goodness import MISS
 from fogproof.checks.statistics.heavy import Tail
 from fogproof.checks.statistics.known import Known
+from fogproof.checks.statistics.light import light_tailed_p
 from fogproof.checks.statistics.means import DOUBT, LAWLESS, mean_test, trusted, unseen_size
 from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.verdict import Finding, Outcome, Resolution
@@ -154,7 +156,7 @@ class _Claim:
             message += "" if self.known.bounded else ', or declare bounds=(low, high) or tails="light"'
             return replace(finding, outcome="inconclusive", message=message, p_value=None, cause="", region=())
         if self._too_few(finding):
-            message = f"{finding.message}; {self.data.n} are too few: the reference with the other sign would pass"
+            message = f"{finding.message}; {self.data.n} are too few: the opposite of the reference would pass"
             return replace(finding, outcome="inconclusive", message=message, p_value=None)
         doubtful = not trusted(self.data, alpha, known) or self.data.largest_share > _SUSPICIOUS
         if doubtful and self.data.n > 1 and finding.outcome != "rejected" and "coarsely" not in finding.message:
@@ -162,10 +164,12 @@ class _Claim:
         return finding
 
     def _too_few(self, finding: Finding) -> bool:
-        """Return whether a few values pass that tell nothing: the reference with the other sign would pass too."""
-        if finding.outcome != "not rejected" or finding.resolution is None or not self.known.light or self.value == 0:
+        """Return whether a few values pass that tell nothing: scattered like this, the reference's opposite would pass too."""
+        few = finding.outcome == "not rejected" and finding.p_value is not None and self.known.light
+        if not few or self.quantity.name != "mean" or self.value == 0:
             return False
-        return self.quantity.name == "mean" and finding.resolution.value > 2 * max(abs(self.value), self.data.deviation)
+        gap = 2 * max(abs(self.value), self.data.deviation) - self.error
+        return light_tailed_p(self.data.n, gap / max(self.data.stderr, math.ulp(0.0))) > self.share
 
     def _may_fall_short(self, finding: Finding) -> bool:
         """Return whether a variance that is too small is an error: it is none if rare values can hold what is missing."""
