@@ -2,22 +2,28 @@
 
 from __future__ import annotations
 
+import contextlib
 import difflib
 import fnmatch
 import importlib.metadata
 import importlib.util
 import os
 import platform
+import shlex
+import sys
 import time
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, Literal
 
 import numpy as np
 
 from fogproof.catalogue import Case, all_cases
+from fogproof.catalogue.own import is_file, own_cases, packages
 from fogproof.checks import Verdict, batch_generator, jsonable
+from fogproof.checks.limits import end_isolated, isolated
 from fogproof.errors import FogproofError, InvalidInputError, NotInstalledError
 from fogproof.oracle_error import oracle_errors
 from fogproof.plan import plan, scene_of
@@ -69,42 +75,122 @@ class Result:
 def select(patterns: Iterable[str]) -> list[Case]:
     """Return the cases whose name is one of the patterns, begins with one as a folder, or matches it as a glob.
 
-    Without patterns: every case that does not ask to be named.
+    `my_cases.py` stands for all cases of that file, `my_cases.py::name` for some of them, and the name under which an installed
+    package offers cases for the package's. Without patterns: every case of the catalogue that does not ask to be named.
     """
     patterns = list(patterns)
-    cases = all_cases()
+    if not patterns:
+        return [case for case in all_cases() if not case.by_name]
+    offered = packages()
     chosen: dict[str, Case] = {}
     for pattern in patterns:
-        hits = [c for c in cases if c.name == pattern or c.name.startswith(pattern.rstrip("/") + "/")]
-        hits = hits or [c for c in cases if fnmatch.fnmatchcase(c.name, pattern)]
-        if not hits:
-            close = difflib.get_close_matches(pattern, [c.name for c in cases], n=3, cutoff=0.4)
-            hint = f"did you mean {', '.join(close)}?" if close else "'fogproof list' shows all names"
-            raise InvalidInputError(f"no case is called {pattern!r}; {hint}", pattern)
-        chosen.update((c.name, c) for c in hits)
-    return [c for c in cases if (c.name in chosen if patterns else not c.by_name)]
+        for case in _matching(pattern, offered):
+            if chosen.setdefault(case.name, case).origin != case.origin:
+                what = f"{case.origin} and {chosen[case.name].origin or 'the catalogue'} both have a case {case.name!r}"
+                raise InvalidInputError(f"{what}; rename one of them", pattern)
+    origins = sorted({case.origin for case in chosen.values()})
+    return [case for origin in origins for case in _whole(origin) if chosen.get(case.name) is case]
 
 
-def run(cases: list[Case], *, seed: int, alpha: float, workers: int, twins: bool = False) -> Iterator[Result]:
+def _matching(pattern: str, offered: list[str]) -> list[Case]:
+    origin, _, name = pattern.partition("::") if is_file(pattern) else ("", "", pattern)
+    if not origin and pattern.partition("/")[0] in offered:
+        origin = pattern.partition("/")[0]
+    cases = _whole(origin)
+    if is_file(pattern):
+        prefix = cases[0].name.partition("/")[0]
+        name = f"{prefix}/{name}" if name else prefix
+    hits = [c for c in cases if c.name == name or c.name.startswith(name.rstrip("/") + "/")]
+    hits = hits or [c for c in cases if fnmatch.fnmatchcase(c.name, name)]
+    if not hits:
+        by_name = {c.name: c for c in cases}
+        close = [called(by_name[near]) for near in difflib.get_close_matches(name, by_name, n=3, cutoff=0.4)]
+        hint = f"did you mean {', '.join(close)}?" if close else f"'fogproof list {origin}'".replace(" '", "'")
+        raise InvalidInputError(f"no case is called {pattern!r}; {hint}{'' if close else ' shows all names'}", pattern)
+    return hits
+
+
+def _whole(origin: str) -> tuple[Case, ...]:
+    """Return the catalogue, or all cases of a file or a package."""
+    return own_cases(origin) if origin else all_cases()
+
+
+def called(case: Case) -> str:
+    """Return what a user types to name a case."""
+    return f"{case.origin}::{case.name.partition('/')[2]}" if is_file(case.origin) else case.name
+
+
+def shares(cases: Iterable[Case], alpha: float) -> dict[str, float]:
+    """Return the part of alpha that the catalogue, a file or a package has in a run of these cases, by its origin.
+
+    A case has its weight's share of that, whichever others of its origin are run.
+    """
+    weights = {c.origin: sum(case.weight for case in _whole(c.origin)) for c in cases}
+    if len(weights) == 1:
+        return dict.fromkeys(weights, alpha)
+    return {origin: alpha * weight / sum(weights.values()) for origin, weight in weights.items()}
+
+
+def run(
+    cases: list[Case],
+    *,
+    seed: int,
+    alpha: float,
+    workers: int,
+    twins: bool = False,
+    time_limit: float | None = None,
+) -> Iterator[Result]:
     """Run cases on threads, yielding each result as it is ready; with `twins`, the broken twin of each as well.
 
-    A case's share of alpha is set by the weights of the whole catalogue, whichever cases are run: choosing some of them does not
-    change any verdict. Its random numbers depend on `seed` and its name alone: neither do the workers.
+    A case's share of alpha is set by the weights of the whole catalogue, file or package it is from, whichever cases are run:
+    choosing some of them does not change any verdict. Its random numbers depend on `seed` and its name alone: neither do the
+    workers. Cases of a file or a package run in a process of their own, and the catalogue's as well if there is a limit.
+
+    time_limit  most seconds a case may take, None for any
     """
-    total = sum(case.weight for case in all_cases())
+    parts = shares(cases, alpha)
+    totals = {origin: sum(case.weight for case in _whole(origin)) for origin in parts}
     pool = ThreadPoolExecutor(max_workers=workers)
     try:
-        jobs = [pool.submit(run_case, case, seed, alpha * case.weight / total, twins) for case in cases]
-        for job in as_completed(jobs):
-            yield job.result()
+        jobs = []
+        for case in cases:
+            share = parts[case.origin] * case.weight / totals[case.origin]
+            alone = case.origin or time_limit is not None
+            job = partial(run_case_alone, time_limit=time_limit) if alone else run_case
+            jobs.append(pool.submit(job, case, seed, share, twins))
+        for done in as_completed(jobs):
+            yield done.result()
     finally:
-        pool.shutdown(wait=True, cancel_futures=True)
+        pool.shutdown(wait=False, cancel_futures=True)
+        end_isolated()
+        pool.shutdown(wait=True)
+
+
+def run_case_alone(case: Case, seed: int, alpha: float, twins: bool = False, time_limit: float | None = None) -> Result:
+    """Run one case in a process of its own, so that nothing it does to the process costs another case's result."""
+    started = time.perf_counter()
+    here = os.getcwd() if case.origin else ""
+    try:
+        result = isolated(partial(_in_process, here, case.origin, case.name, seed, alpha, twins), time_limit)
+    except FogproofError as error:
+        return Result(case, "error", None, str(error), time.perf_counter() - started)
+    return replace(result, case=case)
+
+
+def _in_process(folder: str, origin: str, name: str, seed: int, alpha: float, twins: bool) -> Any:
+    """Run the case of a name; the result goes back without the case, which no pickle can hold."""
+    if folder:
+        os.chdir(folder)  # the server of processes began somewhere else, maybe
+    with contextlib.redirect_stdout(sys.stderr):
+        (case,) = (case for case in _whole(origin) if case.name == name)
+        return replace(run_case(case, seed, alpha, twins), case=None)  # type: ignore[arg-type]
 
 
 def run_case(case: Case, seed: int, alpha: float, twins: bool = False) -> Result:
     """Run one case; whatever goes wrong in it is its result, never the end of the run."""
     result = _run_subject(case, seed, alpha)
-    return replace(result, twin=run_twin(case, seed, alpha)) if twins and result.status != "skipped" else result
+    again = twins and case.twin is not None and result.status != "skipped"
+    return replace(result, twin=run_twin(case, seed, alpha)) if again else result
 
 
 def run_twin(case: Case, seed: int, alpha: float) -> TwinResult:
@@ -184,9 +270,12 @@ def record(
     stopped  the exit code of a run that was interrupted, 0 of one that came to its end
     `oracle` in it is the oracle's own error against proven values, measured here and now (a third of a second).
     """
-    order = {case.name: i for i, case in enumerate(all_cases())}
+    results, asked = list(results), list(asked)
+    origins = sorted({result.case.origin for result in results})
+    order = {case.name: i for i, case in enumerate(case for origin in origins for case in _whole(origin))}
     ordered = sorted(results, key=lambda result: order[result.case.name])
     names = [case.name for case in asked] or [result.case.name for result in ordered]
+    parts = shares(asked or [result.case for result in ordered], alpha)
     return jsonable(
         {
             "schema": SCHEMA,
@@ -203,15 +292,20 @@ def record(
             "title": f"Unfinished: {len(ordered)} of {len(names)}" if len(ordered) < len(names) else "",
             "asked": names,
             "oracle": oracle_errors(),
-            "cases": [_case_record(result, seed, alpha) for result in ordered],
+            "cases": [_case_record(result, seed, parts[result.case.origin]) for result in ordered],
         }
     )
 
 
 def reproduce(case: Case, seed: int, alpha: float) -> str:
-    """Return the command that runs a case again, with the same random numbers and the same verdict."""
-    share = "" if alpha == ALPHA else f" --alpha {alpha:g}"
-    return f"fogproof verify '{case.name}' --seed {seed}{share}"
+    """Return the command that runs a case again, with the same random numbers and the same verdict.
+
+    alpha  the part of the catalogue, file or package that the case is from, see `shares`
+    """
+    share = "" if alpha == ALPHA else f" --alpha {alpha:g}" if float(f"{alpha:g}") == alpha else f" --alpha {alpha!r}"
+    name = called(case)
+    quoted = f"'{name}'" if "'" not in name else shlex.quote(name)
+    return f"fogproof verify {quoted} --seed {seed}{share}"
 
 
 def _case_record(result: Result, seed: int, alpha: float) -> dict[str, Any]:
@@ -224,10 +318,12 @@ def _case_record(result: Result, seed: int, alpha: float) -> dict[str, Any]:
         "expected": case.expected,
         "reason": result.reason,
         "source": case.source,
-        "reference": f"fogproof.analytic: {case.oracle}" if case.reference is not None else case.oracle,
-        "twin": case.twin.error,
+        "reference": f"fogproof.analytic: {case.oracle}"
+        if case.reference is not None and not case.origin
+        else case.oracle,
+        "twin": case.twin.error if case.twin else "",
         "twin_result": result.twin,
-        "plan": None if result.verdict is None else _plan(case),
+        "plan": None if result.verdict is None or case.origin else _plan(case),
         "reproduce": reproduce(case, seed, alpha),
         "seconds": result.seconds,
         "verdict": None if result.verdict is None else result.verdict.to_dict(),

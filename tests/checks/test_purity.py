@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from scipy.special import ndtri
 
-from fogproof import Discrete, Draw, HalfLine, Interval, UnitSphere, check_sampler
+from fogproof import Discrete, Draw, HalfLine, Interval, UnitSphere, UnitSquare, check_sampler
 
 UNIT = Interval(0, 1)
 
@@ -101,6 +102,11 @@ EDGES = {
     "log of zero in five dimensions": ({"sample": steps, "pdf": lambda x: np.exp(-x), "domain": HalfLine(0)}, 5),
     "scatters in empty space": (
         {"sample": empty_segment, "pdf": lambda x: np.where(x >= 1, np.exp(1 - np.maximum(x, 1)), 0.0), "domain": HalfLine(0)}, 1),
+    "a gap at 0 before a root": (
+        {"sample": lambda u: np.where(u[:, 0] == 0, 0.0, 0.001 + 0.999 * np.sqrt(u[:, 0])),
+         "pdf": lambda x: np.where(x > 0.001, 2 * (x - 0.001) / 0.999**2, 0.0)}, 1),
+    "a density that is no number at its edge": (
+        {"sample": lambda u: np.sqrt(u[:, 0]), "pdf": lambda x: np.where(x == 0, np.nan, 2 * x)}, 1),
     "an event of probability 0": (table([0, 0.5, 0.5]), 1),
     "returned pdf infinite": ({"sample": returning(pdf=lambda x: np.where(x == 0, np.inf, 1.0))}, 1),
     "weight not a number": ({"sample": returning(weight=lambda x: np.where(x == 0, np.nan, 1.0))}, 1),
@@ -117,7 +123,24 @@ def test_edge_uniforms_keep_every_promise(name):
     assert verdict.cause == "edge of the uniforms"
 
 
+def levy(u):
+    """Its density exp(-1 / (2 x)) x^-1.5 / sqrt(2 pi) is 0 to every order at x = 0, and underflows long before."""
+    with np.errstate(divide="ignore"):
+        return 1 / ndtri(u[:, 0] / 2) ** 2
+
+
+def levy_pdf(x):
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(x > 0, np.exp(-0.5 / x) * x**-1.5 / np.sqrt(2 * np.pi), 0.0)
+
+
 SOUND = {
+    "density 0 to every order at its edge": (levy, levy_pdf, HalfLine(0), 1),
+    "the same at the upper end": (
+        lambda u: 1 / (1 + levy(u)), lambda y: levy_pdf(1 / y - 1) / y**2, UNIT, 1),
+    "beside a second coordinate": (
+        lambda u: np.stack([1 / (1 + levy(u)), u[:, 1]], axis=-1),
+        lambda y: levy_pdf(1 / y[:, 0] - 1) / y[:, 0] ** 2, UnitSquare(), 2),
     "density 0 at its own edge": (lambda u: np.sqrt(u[:, 0]), lambda x: 2 * x, UNIT, 1),
     "a fifth root": (lambda u: u[:, 0] ** 0.2, lambda x: 5 * x**4, UNIT, 1),
     "density infinite at its edge": (lambda u: u[:, 0] ** 2, lambda x: 0.5 / np.sqrt(x), UNIT, 1),

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 
 from fogproof.checks import Outcome, Verdict, check_estimator, check_sampler
 from fogproof.contracts import Draw, Estimator, Reference, Sampler
 from fogproof.domains import Domain
+from fogproof.errors import InvalidValueError, SubjectError
+from fogproof.validate import number
 
 
 @dataclass(frozen=True)
@@ -67,21 +69,23 @@ class SamplerCase:
     oracle      the name of the oracle's functions, for people
     options     further arguments of `check_sampler`: cdf, axis, mean_cosine, albedo, precision, …
     source      the paper
+    twin        the subject with a planted error; the catalogue has one for every case
     samples     most samples to draw
     weight      share of the run's false-alarm probability, relative to the other cases
     expected    the outcome; "rejected" is a known finding, and `reason` says why
     needs       the extra that must be installed, "" if none
     by_name     whether it runs only when asked for by its name or its folder's
+    origin      what names the file or package it comes from, "" for the catalogue; set where it is read
     """
 
     kind: Literal["sampler"] = "sampler"
     name: str
-    title: str
     make: Callable[[], Sampler]
-    reference: Callable[[np.ndarray], Reference] | None
-    oracle: str
-    source: str
-    twin: Twin
+    title: str = ""
+    reference: Callable[[np.ndarray], Reference] | None = None
+    oracle: str = ""
+    source: str = ""
+    twin: Twin | None = None
     options: Mapping[str, Any] = field(default_factory=dict)
     samples: int = 1_000_000
     weight: float = 1.0
@@ -89,10 +93,14 @@ class SamplerCase:
     reason: str = ""
     needs: str = ""
     by_name: bool = False
+    origin: str = ""
+
+    def __post_init__(self) -> None:
+        _refuse_nonsense(self)
 
     def run(self, alpha: float, seed: int, samples: int | None = None, twin: bool = False) -> Verdict:
         """Check the subject, or its twin, inside the false-alarm probability alpha."""
-        sampler = self.twin.make() if twin else self.make()
+        sampler = _subject(self, twin, ("sample", "pdf", "domain", "dimensions"))
         return check_sampler(
             sampler.sample,
             sampler.pdf,
@@ -112,18 +120,19 @@ class SamplerCase:
 class EstimatorCase:
     """An estimator against its oracle; the fields are those of `SamplerCase`, but the reference is one value.
 
-    variance  the oracle's variance of one realisation, if it knows it
-    cost      the oracle's expectation of the cost of one realisation, if it knows it
+    reference  what the estimator should average to, or a function that returns it, if it costs anything
+    variance   the oracle's variance of one realisation, if it knows it
+    cost       the oracle's expectation of the cost of one realisation, if it knows it
     """
 
     kind: Literal["estimator"] = "estimator"
     name: str
-    title: str
     make: Callable[[], Estimator]
-    reference: Callable[[], Reference]
-    oracle: str
-    source: str
-    twin: Twin
+    reference: Callable[[], Reference] | Reference | float
+    title: str = ""
+    oracle: str = ""
+    source: str = ""
+    twin: Twin | None = None
     variance: Callable[[], Reference | float] | None = None
     cost: Callable[[], Reference | float] | None = None
     options: Mapping[str, Any] = field(default_factory=dict)
@@ -133,13 +142,17 @@ class EstimatorCase:
     reason: str = ""
     needs: str = ""
     by_name: bool = False
+    origin: str = ""
+
+    def __post_init__(self) -> None:
+        _refuse_nonsense(self)
 
     def run(self, alpha: float, seed: int, samples: int | None = None, twin: bool = False) -> Verdict:
         """Check the subject, or its twin, inside the false-alarm probability alpha."""
-        estimator = self.twin.make() if twin else self.make()
+        estimator = _subject(self, twin, ("draw",))
         return check_estimator(
             estimator.draw,
-            self.reference(),
+            self.reference() if callable(self.reference) else self.reference,
             variance=self.variance() if self.variance else None,
             cost=self.cost() if self.cost else None,
             samples=samples or self.samples,
@@ -150,6 +163,34 @@ class EstimatorCase:
 
 
 Case = SamplerCase | EstimatorCase
+
+
+def _refuse_nonsense(case: Case) -> None:
+    """Refuse what no run could do anything with; what the checks refuse by themselves is theirs."""
+    if not (isinstance(case.name, str) and case.name.strip()):
+        raise InvalidValueError("name", "must be a text", case.name)
+    if not callable(case.make):
+        fix = "give a function that builds it, for example make=lambda: MySampler(g=0.5), or the class itself"
+        raise InvalidValueError("make", f"of case {case.name!r} must be a function without arguments", case.make, fix)
+    if isinstance(case, SamplerCase) and not (case.reference is None or callable(case.reference)):
+        raise InvalidValueError("reference", f"of case {case.name!r} must be a function of points", case.reference)
+    if not (case.twin is None or isinstance(case.twin, Twin)):
+        raise InvalidValueError("twin", f"of case {case.name!r} must be a Twin(error, make)", case.twin)
+    if case.expected not in get_args(Outcome):
+        raise InvalidValueError("expected", f"of case {case.name!r} must be one of {get_args(Outcome)}", case.expected)
+    if not isinstance(case.options, Mapping):
+        raise InvalidValueError("options", f"of case {case.name!r} must be a dict of arguments", case.options)
+    number("weight", case.weight, f"of case {case.name!r} must be finite and > 0", 0, np.inf, open_ends=True)
+    number("samples", case.samples, f"of case {case.name!r} must be >= 1", 1)
+
+
+def _subject(case: Case, twin: bool, parts: tuple[str, ...]) -> Any:
+    """Build the subject, or its twin, and refuse one that lacks a part."""
+    subject = case.twin.make() if twin and case.twin else case.make()
+    if missing := [part for part in parts if not hasattr(subject, part)]:
+        what = f"make returned {type(subject).__name__}, which has no {' and no '.join(missing)}"
+        raise SubjectError(f"{what}; a {case.kind} has {', '.join(parts)}", missing[0])
+    return subject
 
 
 @dataclass(frozen=True)

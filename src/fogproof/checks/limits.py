@@ -8,7 +8,7 @@ import os
 import sys
 import threading
 from collections.abc import Callable
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from fogproof.errors import FogproofError, SubjectError, UnsupportedError
 from fogproof.validate import number
@@ -25,9 +25,35 @@ def within(seconds: float, check: Callable[[], Answer]) -> Answer:
     number("seconds", seconds, "must be > 0 [s]", 0, open_ends=True)
     if sys.platform == "win32" or "fork" not in multiprocessing.get_all_start_methods():
         raise UnsupportedError("a time limit needs a system that can fork: run the check in a process of your own")
-    context = multiprocessing.get_context("fork")
+    return _answer_of(multiprocessing.get_context("fork"), seconds, check)
+
+
+def isolated(check: Callable[[], Answer], seconds: float | None = None) -> Answer:
+    """Return check() from a fresh process, or raise `SubjectError` if it ends that process, or takes longer than `seconds`.
+
+    Unlike `within` it may be called while other threads are at work, on any system; the check must be picklable: a function of a
+    module, or a partial of one.
+    """
+    name = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
+    context = multiprocessing.get_context(name)
+    if name == "forkserver":  # what takes seconds to load is loaded once
+        context.set_forkserver_preload(["fogproof.verify", "fogproof.checks.suite", "scipy.stats", "scipy.optimize"])
+    return _answer_of(context, seconds, check)
+
+
+def end_isolated() -> None:
+    """End whatever `isolated` still waits for."""
+    for child in multiprocessing.active_children():
+        if child.name == _NAME:
+            child.kill()
+
+
+_NAME = "fogproof subject"
+
+
+def _answer_of(context: Any, seconds: float | None, check: Callable[[], Answer]) -> Answer:
     ours, theirs = context.Pipe(duplex=False)
-    child = context.Process(target=_answer, args=(check, theirs), daemon=True)
+    child = context.Process(target=_answer, args=(check, theirs), name=_NAME, daemon=True)
     child.start()
     theirs.close()
     try:
@@ -44,7 +70,8 @@ def within(seconds: float, check: Callable[[], Answer]) -> Answer:
         ours.close()
     if not good:
         raise SubjectError(*answer)
-    return answer
+    returned: Answer = answer
+    return returned
 
 
 def _answer(check: Callable[[], object], pipe: multiprocessing.connection.Connection) -> None:

@@ -168,8 +168,8 @@ class Verdict:
         lines = [f"{self.outcome} (alpha {self.alpha:g}, {self.samples} samples, seed {self.seed})"]
         if self.cause:
             lines.append(f"  likely: {self.cause}" + (f"; {self.diagnosis}" if self.diagnosis else ""))
-        lines += [f"  {f.outcome:12}  {_told(f)}" for f in self.findings if f.outcome == "rejected"]
-        lines += [f"  {f.outcome:12}  {_told(f)}" for f in self.findings if f.outcome == "inconclusive"]
+        lines += [f"  {f.outcome:12}  {_line_of(f)}" for f in self.findings if f.outcome == "rejected"]
+        lines += [f"  {f.outcome:12}  {_line_of(f)}" for f in self.findings if f.outcome == "inconclusive"]
         passed = [f.check for f in self.findings if f.outcome == "not rejected"]
         if passed:
             lines.append(f"  not rejected: {', '.join(passed)}")
@@ -217,7 +217,7 @@ class Verdict:
         )
 
 
-def _told(finding: Finding) -> str:
+def _line_of(finding: Finding) -> str:
     """Return one finding in a line."""
     p = "" if finding.p_value is None else f" p = {finding.p_value:.3g}."
     where = "".join(f" {region};" for region in finding.region).removesuffix(";")

@@ -14,7 +14,7 @@ from fogproof.verify import select
 @click.argument("cases", nargs=-1, metavar="[CASE]...")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON lines instead of a table.")
 def command(cases: tuple[str, ...], as_json: bool) -> int:
-    """Show the cases of the catalogue: what is checked, against what, and the planted error of its broken twin.
+    """Show the cases of the catalogue, of a file or of a package: what is checked, against what, and the planted error of its twin.
 
     \b
     Example:  fogproof list directions
@@ -29,11 +29,16 @@ def command(cases: tuple[str, ...], as_json: bool) -> int:
                 "kind": case.kind,
                 "reference": case.oracle,
                 "source": case.source,
-                "twin": case.twin.error,
+                "twin": case.twin.error if case.twin else "",
                 "expected": case.expected,
                 "needs": case.needs,
             }
             say(json.dumps(row))
         else:
-            say(f"{case.name:{width}}  {case.title}; reference {case.oracle}; twin: {case.twin.error}")
+            said = (
+                case.title,
+                f"reference {case.oracle}" * bool(case.oracle),
+                f"twin: {case.twin.error}" if case.twin else "",
+            )
+            say(f"{case.name:{width}}  {'; '.join(filter(None, said))}".rstrip())
     return 0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime
 import json
+import math
 import shlex
 import sys
 import time
@@ -16,7 +17,7 @@ from fogproof.cli.signals import code_of, stoppable
 from fogproof.cli.terminal import say
 from fogproof.errors import InvalidValueError
 from fogproof.text import one_line
-from fogproof.verify import ALPHA, Result, exit_code, record, reproduce, run, select
+from fogproof.verify import ALPHA, Result, exit_code, record, reproduce, run, select, shares
 
 
 @click.command("verify")
@@ -37,6 +38,9 @@ from fogproof.verify import ALPHA, Result, exit_code, record, reproduce, run, se
     "--workers", type=click.IntRange(min=1), default=2, show_default=True, help="Threads; results do not depend on it."
 )
 @click.option("--twins", is_flag=True, help="Run every broken twin as well: the same checks must reject it.")
+@click.option(
+    "--time-limit", type=float, metavar="SECONDS", help="Longest a case may take; one that takes longer is an error."
+)
 @click.option("--force", is_flag=True, help="Replace a page in the report's folder that fogproof did not write.")
 @click.option("--json", "as_json", is_flag=True, help="Print the record of the run as JSON instead of rows.")
 def command(
@@ -46,18 +50,23 @@ def command(
     alpha: float,
     workers: int,
     twins: bool,
+    time_limit: float | None,
     force: bool,
     as_json: bool,
 ) -> int:
     """Check every sampler and estimator against its reference.
 
-    CASE is a name, a folder of names, or a glob; without any, the whole catalogue runs.
+    CASE is a name, a folder of names, or a glob; without any, the whole catalogue runs. A path such as my_cases.py stands for a
+    file of your own, whose function cases() returns SamplerCase and EstimatorCase of fogproof.catalogue; my_cases.py::name for
+    some of it. Each case of it runs in a process of its own.
 
     \b
     Example:  fogproof verify directions 'mitsuba/hg*' --report build/report
     """
     if not 0 < alpha < 1:
         raise InvalidValueError("--alpha", "must lie in (0, 1)", alpha)
+    if time_limit is not None and not 0 < time_limit < math.inf:
+        raise InvalidValueError("--time-limit", "must be > 0 [s]", time_limit)
     chosen = select(cases)
     if folder is not None:
         from fogproof.reports import prepare_folder
@@ -72,7 +81,7 @@ def command(
         say(_row(width, "case", "outcome", "smallest p", "resolution", "samples", "seconds"))
     try:
         with stoppable(), _progress(len(chosen)) as advance:
-            for result in run(chosen, seed=seed, alpha=alpha, workers=workers, twins=twins):
+            for result in run(chosen, seed=seed, alpha=alpha, workers=workers, twins=twins, time_limit=time_limit):
                 results.append(result)
                 if not as_json:
                     advance.print(_describe(width, result))
@@ -80,7 +89,7 @@ def command(
     except KeyboardInterrupt as stop:
         stopped = code_of(stop)
         say(f"stopped after {len(results)} of {len(chosen)} cases; these are kept", err=True)
-    _explain(results, seed, alpha)
+    _explain(results, seed, shares(chosen, alpha))
     if as_json or folder is not None:
         run_record = record(
             results,
@@ -116,10 +125,10 @@ def _describe(width: int, result: Result) -> str:
     return _row(width, result.case.name, outcome, p, resolution, str(verdict.samples), f"{result.seconds:.2f}")
 
 
-def _explain(results: list[Result], seed: int, alpha: float) -> None:
+def _explain(results: list[Result], seed: int, parts: dict[str, float]) -> None:
     for result in results:
         if not result.good:
-            again = reproduce(result.case, seed, alpha) + (" --twins" if result.twin else "")
+            again = reproduce(result.case, seed, parts[result.case.origin]) + (" --twins" if result.twin else "")
             for what in _faults(result):
                 say(f"\n{result.case.name}: {what}\n  reproduce: {again}", err=True)
     counts: dict[str, int] = {}
@@ -136,7 +145,7 @@ def _faults(result: Result) -> list[str]:
     faults = []
     if result.status not in ("passed", "known", "skipped"):
         faults.append(result.reason if result.verdict is None else str(result.verdict))
-    if result.twin and result.twin.outcome != "rejected":
+    if result.twin and result.case.twin and result.twin.outcome != "rejected":
         what = f"its broken twin ({result.case.twin.error}) was not rejected: {result.twin.outcome}"
         faults.append(f"{what}; {result.twin.reason}" if result.twin.reason else what)
     return faults

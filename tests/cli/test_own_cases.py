@@ -1,0 +1,162 @@
+"""One's own file of cases in a run: its faults are sentences, its subjects cannot cost another's result, alpha is shared."""
+
+import json
+import textwrap
+
+import pytest
+from click.testing import CliRunner
+
+from fogproof import verify
+from fogproof.catalogue import SamplerCase, own
+from fogproof.cli.main import cli
+from fogproof.errors import FogproofError, InvalidInputError
+
+HEAD = """
+    import os, time
+    import numpy as np
+    import fogproof
+    from fogproof.catalogue import EstimatorCase, SamplerCase, Twin
+
+    class Exponential:
+        domain, dimensions = fogproof.HalfLine(0.0), 1
+        def __init__(self, sigma=1.0):
+            self.sigma = sigma
+        def sample(self, u):
+            return -np.log1p(-u[:, 0]) / self.sigma
+        def pdf(self, t):
+            return np.exp(-t)
+
+    class Estimator:
+        def __init__(self, draw):
+            self.draw = draw
+"""
+MINE = (
+    HEAD
+    + """
+    print("printed on the way")
+    def cases():
+        dead = lambda: Estimator(lambda rng, n: os._exit(3))
+        slow = lambda: Estimator(lambda rng, n: time.sleep(1000))
+        return [
+            SamplerCase(name="right", make=Exponential, samples=20_000, twin=Twin("rate", lambda: Exponential(2.0))),
+            SamplerCase(name="wrong", make=lambda: Exponential(2.0), samples=20_000),
+            SamplerCase(name="none", make=lambda: 3),
+            EstimatorCase(name="mean", make=lambda: Estimator(lambda rng, n: rng.random(n)), reference=0.5, samples=10_000),
+            EstimatorCase(name="dead", make=dead, reference=0.5),
+            EstimatorCase(name="slow", make=slow, reference=0.5, weight=3),
+        ]
+"""
+)
+
+
+def written(folder, text, name="my_cases.py"):
+    path = folder / name
+    path.write_text(textwrap.dedent(text))
+    return str(path)
+
+
+def test_own_cases_run_beside_the_catalogue_and_none_costs_another_its_result(tmp_path):
+    path = written(tmp_path, MINE)
+    chosen = [case for case in verify.select([path, "fog/analog/haze"]) if case.name != "my_cases/slow"]
+    results = {r.case.name: r for r in verify.run(chosen, seed=3, alpha=1e-6, workers=2, twins=True)}
+    statuses = {name: result.status for name, result in results.items()}
+    assert statuses == {
+        "fog/analog/haze": "passed",
+        "my_cases/right": "passed",
+        "my_cases/wrong": "rejected",
+        "my_cases/none": "error",
+        "my_cases/mean": "passed",
+        "my_cases/dead": "error",
+    }
+    assert results["my_cases/right"].twin.outcome == "rejected"
+    assert results["my_cases/wrong"].twin is None
+    assert "has no sample and no pdf" in results["my_cases/none"].reason
+    assert "ended the process, exit code 3" in results["my_cases/dead"].reason
+    record = verify.record(results.values(), seed=3, alpha=1e-6, command="", started="", seconds=1.0, asked=chosen)
+    assert [case["name"] for case in record["cases"]][:2] == ["fog/analog/haze", "my_cases/right"]
+    # The command that is said reaches the same verdict.
+    (told,) = [case["reproduce"] for case in record["cases"] if case["name"] == "my_cases/right"]
+    _, _, quoted, _, seed, _, alpha = told.split()
+    (case,) = verify.select([quoted.strip("'")])
+    (again,) = verify.run([case], seed=int(seed), alpha=float(alpha), workers=1)
+    assert again.verdict.alpha == pytest.approx(results["my_cases/right"].verdict.alpha, rel=1e-15)
+    assert [f.p_value for f in again.verdict.findings] == [
+        f.p_value for f in results["my_cases/right"].verdict.findings
+    ]
+
+
+def test_a_subject_that_hangs_is_ended(tmp_path):
+    chosen = verify.select([written(tmp_path, MINE) + "::slow"])
+    (result,) = verify.run(chosen, seed=3, alpha=1e-6, workers=2, time_limit=2)
+    assert result.status == "error"
+    assert "did not return within 2 s" in result.reason
+
+
+def test_alpha_is_shared_with_the_file(tmp_path):
+    path = written(tmp_path, MINE)
+    alone = verify.shares(verify.select([path]), 1e-6)
+    assert alone == {path: 1e-6}
+    both = verify.shares(verify.select([path, "fog"]), 1e-6)
+    assert sum(both.values()) == pytest.approx(1e-6)
+    assert both[path] == pytest.approx(1e-6 * 8 / (8 + sum(c.weight for c in verify.all_cases())))
+
+
+def test_the_command_line_takes_a_file(tmp_path):
+    path = written(tmp_path, MINE)
+    runner = CliRunner()
+    out = runner.invoke(cli, ["list", path, "--json"], standalone_mode=False)
+    rows = [json.loads(line) for line in out.stdout.splitlines()]  # nothing that the file prints is in between
+    assert [row["name"] for row in rows][:2] == ["my_cases/right", "my_cases/wrong"]
+    out = runner.invoke(cli, ["verify", f"{path}::right", "--json", "--seed", "1"], standalone_mode=False)
+    assert json.loads(out.stdout)["cases"][0]["status"] == "passed"
+    assert out.return_value == 0
+
+
+FAULTS = {
+    "nothing there": (None, "there is no file"),
+    "syntax": ("def cases(:\n    pass", "line 1: invalid syntax"),
+    "no cases": ("x = 1", "has no function cases()"),
+    "none": ("def cases(): return []", "cases() returned none"),
+    "no list": ("def cases(): return 3", "TypeError: 'int' object is not iterable"),
+    "wrong type": ("def cases(): return [3]", "cases() must return SamplerCase and EstimatorCase"),
+    "raises": ("import math\nmath.sqrt(-1)\n", "line 2: ValueError: math domain error"),
+    "exits": ("raise SystemExit(3)", "line 1: SystemExit: 3"),
+    "lines": ("def cases():\n    raise ValueError('a\\nb')", "line 2: ValueError: a b"),
+    "twice": (HEAD + "    def cases(): return 2 * [SamplerCase(name='a', make=Exponential)]\n", "two cases are called 'a'"),
+    "make": (HEAD + "    def cases(): return [SamplerCase(name='a', make=Exponential())]\n", "must be a function without"),
+    "weight": (HEAD + "    def cases(): return [SamplerCase(name='a', make=Exponential, weight=0)]\n", "must be finite and > 0"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_a_fault_of_the_file_is_one_sentence(tmp_path, name):
+    text, words = FAULTS[name]
+    path = written(tmp_path, text) if text is not None else str(tmp_path / "none.py")
+    with pytest.raises(FogproofError) as caught:
+        verify.select([path])
+    assert words in str(caught.value)
+    assert "\n" not in str(caught.value)
+    assert path in str(caught.value)
+
+
+def test_names_are_told_apart(tmp_path):
+    one = written(
+        tmp_path, HEAD + "    def cases(): return [SamplerCase(name='analog/haze', make=Exponential)]\n", "fog.py"
+    )
+    with pytest.raises(InvalidInputError, match="both have a case 'fog/analog/haze'; rename one of them"):
+        verify.select(["fog", one])
+    with pytest.raises(InvalidInputError, match=r"did you mean .*fog\.py::analog/haze\?"):
+        verify.select([f"{one}::analog/hase"])
+
+
+def test_an_installed_package_offers_cases(monkeypatch):
+    class Point:
+        name = "lobes"
+
+        def load(self):
+            return lambda: [SamplerCase(name="a", make=lambda: None), SamplerCase(name="b", make=lambda: None)]
+
+    monkeypatch.setattr(own.importlib.metadata, "entry_points", lambda **_: [Point()])
+    assert [case.name for case in verify.select(["lobes"])] == ["lobes/a", "lobes/b"]
+    assert [case.name for case in verify.select(["lobes/b"])] == ["lobes/b"]
+    assert [case.origin for case in verify.select(["lobes/b", "fog/analog/haze"])] == ["", "lobes"]
