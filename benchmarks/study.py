@@ -26,7 +26,7 @@ from fogproof.checks import batch_generator
 from fogproof.study.aggregate import levels_of
 from fogproof.study.batches import BatchResult, draw_batch, moments_of
 from fogproof.study.cells import Cell, cells_of, prepare
-from fogproof.study.executors import crew
+from fogproof.study.executors import open_workers
 from fogproof.study.files import Study, study_of
 from fogproof.study.plan import Batch, Batches, batches_of
 from fogproof.study.run import draw_missing
@@ -78,10 +78,10 @@ def whole(study: Study, cells: list[Cell], batches: Batches) -> float:
     with (
         tempfile.TemporaryDirectory() as folder,
         opened(Path(folder), study) as store,
-        crew("threads", 1) as hands,
+        open_workers("threads", 1) as pool,
     ):
         started = time.process_time()
-        draw_missing(study, cells, batches, store, hands, draw=here)
+        draw_missing(study, cells, batches, store, pool, draw=here)
         return time.process_time() - started
 
 
@@ -132,7 +132,7 @@ bench.summed(Path({folder!r}), {batches})
 
 
 def write_large(folder: Path, study: Study, total: int) -> None:
-    """Write a store with so many batches, each as a real one is, of a handful of different contents."""
+    """Write a store with so many batches, each as a real one is, of a few different contents."""
     rng = np.random.default_rng(1)
     contents = []
     for _ in range(64):

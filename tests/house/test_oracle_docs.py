@@ -33,7 +33,11 @@ def test_the_request_shown_has_the_answer_shown():
 
 
 def test_every_code_is_explained():
-    codes = {cls.code for cls in FogproofError.__subclasses__()} - {"subject-failed", "rejected", "inconclusive"}
+    codes = {cls.code for cls in FogproofError.__subclasses__() if cls.__module__ == "fogproof.errors"} - {
+        "subject-failed",
+        "rejected",
+        "inconclusive",
+    }
     assert codes <= set(re.findall(r"^\| `([a-z-]+)` \| ", PAGE, re.MULTILINE))
 
 

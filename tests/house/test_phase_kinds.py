@@ -24,7 +24,7 @@ FOR_ITS_KIND = {
     "analytic/airlight/pegoraro2009.py": "a published method for isotropic scattering only",
     "analytic/airlight/pegoraro2010.py": "a published method whose series are per kind",
     "analytic/airlight/sun2005.py": "a published method for isotropic scattering only",
-    "src/fogproof/study/methods/paths.py": "the half space is solved for isotropic scattering only",
+    "src/fogproof/study/question.py": "the half space is solved for isotropic scattering only",
 }
 """Files outside the rooms that ask for one kind, and why."""
 

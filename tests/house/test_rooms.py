@@ -18,7 +18,7 @@ NAMES = {name for kinds in KINDS.values() for name in kinds} | {"Plane"}
 ALLOWED = {
     "analytic/variance/single_scattering.py": "a formula of point lights alone",
     "src/fogproof/study/methods/airlight.py": "the same",
-    "src/fogproof/study/methods/paths.py": "a solution of the ball under a sky alone",
+    "src/fogproof/study/question.py": "a solution of the ball under a sky alone",
     "src/fogproof/scene/surfaces/surface.py": "validates its own field",
 }
 

@@ -15,7 +15,7 @@ pytest.importorskip("distributed")
 
 from fogproof.study import executors, read_study, run_study
 from fogproof.study.cells import cells_of
-from fogproof.study.executors import ClusterError, crew
+from fogproof.study.executors import ClusterError, open_workers
 from fogproof.study.plan import batches_of
 from fogproof.study.run import draw_missing
 from fogproof.study.store import opened
@@ -81,9 +81,9 @@ def test_a_cluster_gives_the_same_bits_though_a_worker_is_killed(tmp_path, clust
             os.kill(victim.pid, signal.SIGKILL)
 
     with opened(tmp_path / "cluster", STUDY) as store:
-        with crew(f"dask://{address}", None) as hands:
-            assert hands.slots == 2
-            draw_missing(STUDY, cells, batches, store, hands, advance)
+        with open_workers(f"dask://{address}", None) as pool:
+            assert pool.slots == 2
+            draw_missing(STUDY, cells, batches, store, pool, advance)
         assert victim.wait() == -signal.SIGKILL
         assert store.failures() == []
         assert sorted(told) == list(range(len(batches)))
@@ -110,9 +110,9 @@ def test_a_lost_cluster_keeps_what_is_there(tmp_path, cluster):
     with (
         opened(tmp_path, STUDY) as store,
         pytest.raises(ClusterError, match="the cluster was lost; what was drawn is kept"),
-        crew(f"dask://{address}", None) as hands,
+        open_workers(f"dask://{address}", None) as pool,
     ):
-        draw_missing(STUDY, cells, batches, store, hands, advance)
+        draw_missing(STUDY, cells, batches, store, pool, advance)
     with opened(tmp_path, STUDY) as store:
         assert len(batches) // 2 <= len(store.done()) < len(batches)
     assert drawn(STUDY, tmp_path)["batches"]["done"] == len(batches)
@@ -122,6 +122,6 @@ def test_where_no_scheduler_answers(monkeypatch):
     monkeypatch.setattr(executors, "PATIENCE", 0.5)
     with (
         pytest.raises(ClusterError, match=r"no Dask scheduler answers at 127\.0\.0\.1:9"),
-        crew("dask://127.0.0.1:9", None),
+        open_workers("dask://127.0.0.1:9", None),
     ):
         pass

@@ -100,11 +100,11 @@ def test_other_voxels_make_another_study(tmp_path):
     file.write_text(toml(table))
     np.save(tmp_path / "grid.npy", np.full((1, 1, 4), 0.5))
     before = read_study(file)
-    assert before.scenes[1].matter.sigma_t.shape == (1, 1, 4)
+    assert before.scenes[1].built_medium.sigma_t.shape == (1, 1, 4)
     np.save(tmp_path / "grid.npy", np.full((1, 1, 4), 0.25))
     assert read_study(file).fingerprint != before.fingerprint
     with pytest.raises(FogproofError, match="has changed since"):
-        _ = study_of(before.text, before.folder).scenes[1].matter
+        _ = study_of(before.text, before.folder).scenes[1].built_medium
 
 
 def test_batches_cover_every_replicate_once():

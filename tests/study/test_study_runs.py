@@ -14,7 +14,7 @@ from study_fixtures import HOW, LIT, SMALL, drawn, estimator, kinds, study_from,
 from fogproof.study import read_study, run_study
 from fogproof.study.batches import run_batch
 from fogproof.study.cells import cells_of
-from fogproof.study.executors import crew
+from fogproof.study.executors import open_workers
 from fogproof.study.plan import batches_of
 from fogproof.study.record import make_record
 from fogproof.study.run import ATTEMPTS, draw_missing
@@ -37,8 +37,8 @@ def test_the_order_of_batches_does_not_matter(tmp_path, undisturbed):
     cells, batches = cells_of(STUDY), batches_of(cells_of(STUDY))
     shuffled = random.sample(batches, len(batches))
     with opened(tmp_path, STUDY) as store:
-        with crew("threads", 2) as hands:
-            draw_missing(STUDY, cells, shuffled, store, hands)
+        with open_workers("threads", 2) as pool:
+            draw_missing(STUDY, cells, shuffled, store, pool)
         assert make_record(STUDY, cells, batches, store, HOW)["digest"] == undisturbed
 
 
@@ -47,10 +47,10 @@ def test_processes_give_the_same_bits_and_survive_a_death(tmp_path, undisturbed)
     once, always = 20, 33
     study, cells, batches = STUDY, cells_of(STUDY), batches_of(cells_of(STUDY))
     os.environ["STUDY_TEST_FOLDER"] = str(tmp_path)
-    with opened(tmp_path / "run", study) as store, crew("processes", 1) as hands:
+    with opened(tmp_path / "run", study) as store, open_workers("processes", 1) as pool:
         told = []
         draw_missing(
-            study, cells, batches, store, hands, lambda batch, result: told.append((batch.number, result is None)),
+            study, cells, batches, store, pool, lambda batch, result: told.append((batch.number, result is None)),
             _deadly(once, always),
         )  # fmt: skip
         assert (always, True) in told
@@ -67,7 +67,7 @@ def test_processes_give_the_same_bits_and_survive_a_death(tmp_path, undisturbed)
             if s["name"] == victim.scene.name and e["name"] == victim.name
         )
         assert e["outcome"] == "inconclusive"
-        draw_missing(study, cells, batches, store, hands)  # the next run tries it again
+        draw_missing(study, cells, batches, store, pool)  # the next run tries it again
         assert store.failures() == []
         assert make_record(study, cells, batches, store, HOW)["digest"] == undisturbed
 
@@ -129,9 +129,9 @@ def test_an_interrupt_keeps_what_is_under_way(tmp_path, undisturbed):
     cells, batches = cells_of(STUDY), batches_of(cells_of(STUDY))
     done = 0
     for n in (1, 17, 60):
-        with opened(tmp_path, STUDY) as store, crew("threads", 2) as hands:
+        with opened(tmp_path, STUDY) as store, open_workers("threads", 2) as pool:
             with pytest.raises(KeyboardInterrupt):
-                draw_missing(STUDY, cells, batches, store, hands, interrupted_after(n))
+                draw_missing(STUDY, cells, batches, store, pool, interrupted_after(n))
             assert len(store.done()) >= done + n
             done = len(store.done())
     assert done < len(batches)

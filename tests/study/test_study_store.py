@@ -19,7 +19,7 @@ from fogproof.checks import within
 from fogproof.study import StoreError
 from fogproof.study.batches import run_batch
 from fogproof.study.cells import cells_of
-from fogproof.study.executors import crew
+from fogproof.study.executors import open_workers
 from fogproof.study.plan import batches_of
 from fogproof.study.run import draw_missing
 from fogproof.study.store import FILE, opened
@@ -149,10 +149,10 @@ def test_one_process_at_a_time(tmp_path):
 
 def test_a_full_disk_keeps_what_is_there(tmp_path, undisturbed):
     cells, batches = cells_of(STUDY), batches_of(cells_of(STUDY))
-    with opened(tmp_path, STUDY) as store, crew("threads", 1) as hands:
+    with opened(tmp_path, STUDY) as store, open_workers("threads", 1) as pool:
         store._connection.execute("pragma max_page_count = 12")
         with pytest.raises(StoreError, match=r"no room left .* is kept; make room and give the same command again"):
-            draw_missing(STUDY, cells, batches, store, hands)
+            draw_missing(STUDY, cells, batches, store, pool)
     with opened(tmp_path, STUDY) as store:
         assert 0 < len(store.done()) < len(batches)
     assert drawn(STUDY, tmp_path)["digest"] == undisturbed

@@ -74,6 +74,7 @@ class Finding:
     interval    where the true effect lies
     region      where the misfit is, and in which direction, in words
     cause       the likely class of error where it is rejected: "normalisation", "wrong measure", "atom", ...
+    lawless     True if the p-value holds whatever the law of the values
     """
 
     check: str
@@ -89,6 +90,7 @@ class Finding:
     interval: Interval | None = None
     region: tuple[str, ...] = ()
     cause: str = ""
+    lawless: bool = False
 
     def located(self, region: str) -> Finding:
         """Return the finding with one more word on where the misfit is."""
@@ -166,8 +168,8 @@ class Verdict:
         lines = [f"{self.outcome} (alpha {self.alpha:g}, {self.samples} samples, seed {self.seed})"]
         if self.cause:
             lines.append(f"  likely: {self.cause}" + (f"; {self.diagnosis}" if self.diagnosis else ""))
-        lines += [f"  {f.outcome:12}  {_told(f)}" for f in self.findings if f.outcome == "rejected"]
-        lines += [f"  {f.outcome:12}  {_told(f)}" for f in self.findings if f.outcome == "inconclusive"]
+        lines += [f"  {f.outcome:12}  {_line_of(f)}" for f in self.findings if f.outcome == "rejected"]
+        lines += [f"  {f.outcome:12}  {_line_of(f)}" for f in self.findings if f.outcome == "inconclusive"]
         passed = [f.check for f in self.findings if f.outcome == "not rejected"]
         if passed:
             lines.append(f"  not rejected: {', '.join(passed)}")
@@ -215,7 +217,7 @@ class Verdict:
         )
 
 
-def _told(finding: Finding) -> str:
+def _line_of(finding: Finding) -> str:
     """Return one finding in a line."""
     p = "" if finding.p_value is None else f" p = {finding.p_value:.3g}."
     where = "".join(f" {region};" for region in finding.region).removesuffix(";")

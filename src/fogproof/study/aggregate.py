@@ -92,7 +92,7 @@ class _Handful:
 
 
 def _level(own: Iterator[Row], stretch: Stretch) -> Level:
-    """Return the level that some rows belong to; a handful at a time, because there may be very many."""
+    """Return the level that some rows belong to; a few at a time, because there may be very many."""
     parts: list[_Handful] = []
     while group := list(islice(own, _AT_ONCE)):
         parts.append(_handful(group, stretch))

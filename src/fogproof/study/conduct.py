@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from fogproof.study.cells import cells_of, prepare
-from fogproof.study.executors import crew
+from fogproof.study.executors import open_workers
 from fogproof.study.files import Study
 from fogproof.study.history import compare
 from fogproof.study.plan import batches_of
@@ -51,11 +51,11 @@ def run_study(
         slots = 0
         stopped: KeyboardInterrupt | None = None
         if missing:
-            with crew(executor, workers) as hands, Progress(cells, batches, done, hands.slots) as progress:
+            with open_workers(executor, workers) as pool, Progress(cells, batches, done, pool.slots) as progress:
                 store.begin(started, json.dumps(environment(), sort_keys=True))
-                slots = hands.slots
+                slots = pool.slots
                 try:
-                    draw_missing(study, cells, batches, store, hands, progress.advance)
+                    draw_missing(study, cells, batches, store, pool, progress.advance)
                 except KeyboardInterrupt as stop:
                     stopped = stop
         run = Circumstances(command, started, time.perf_counter() - clock, executor, slots, stopped is not None)

@@ -1,6 +1,6 @@
 """Where batches are drawn: threads, processes, or a Dask cluster, all behind `concurrent.futures`.
 
-A worker that dies takes its batches with it. They are drawn again: by a new pool, or by Dask elsewhere. `Crew.restart` makes the
+A worker that dies takes its batches with it. They are drawn again: by a new pool, or by Dask elsewhere. `Workers.restart` makes the
 new pool; whether a batch kills its workers is for the caller to find out.
 """
 
@@ -30,7 +30,7 @@ class ClusterError(SubjectError):
 
 
 @dataclass
-class Crew:
+class Workers:
     """An executor and how to get another one.
 
     slots  batches that can be drawn at the same time
@@ -55,17 +55,17 @@ def available() -> int:
 
 
 @contextlib.contextmanager
-def crew(where: str, workers: int | None) -> Iterator[Crew]:
-    """Open a crew: "threads", "processes", or "dask://host:port" for a cluster, whose workers are its own."""
+def open_workers(where: str, workers: int | None) -> Iterator[Workers]:
+    """Open workers: "threads", "processes", or "dask://host:port" for a cluster, whose workers are its own."""
     if where.startswith("dask://"):
         with _dask(where.removeprefix("dask://")) as made:
             yield made
         return
     n = workers or available()
     if where == "threads":
-        made = Crew(lambda: ThreadPoolExecutor(n), n)
+        made = Workers(lambda: ThreadPoolExecutor(n), n)
     elif where == "processes":
-        made = Crew(lambda: ProcessPoolExecutor(n, _context(), initializer=_as_worker), n)
+        made = Workers(lambda: ProcessPoolExecutor(n, _context(), initializer=_as_worker), n)
     else:
         raise InvalidValueError("--executor", "must be threads, processes or dask://host:port", where)
     try:
@@ -100,7 +100,7 @@ def _end_with(sentinel: int) -> None:
 
 
 @contextlib.contextmanager
-def _dask(address: str) -> Iterator[Crew]:
+def _dask(address: str) -> Iterator[Workers]:
     try:
         from distributed import Client
     except ImportError:
@@ -112,7 +112,7 @@ def _dask(address: str) -> Iterator[Crew]:
     try:
         threads = sum(client.nthreads().values())
         # pure=False: by default equal calls are taken to be one, and copies of its result come back.
-        yield Crew(lambda: client.get_executor(pure=False), max(threads, 1))
+        yield Workers(lambda: client.get_executor(pure=False), max(threads, 1))
     finally:
         with contextlib.suppress(Exception):  # a cluster that has gone cannot be told goodbye
             client.close(timeout=5)

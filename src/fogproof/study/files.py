@@ -9,84 +9,38 @@ from __future__ import annotations
 import hashlib
 import json
 import tomllib
-from dataclasses import dataclass, field
-from functools import cached_property
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import Any
 
 import numpy as np
 
-from fogproof.analytic import ambient_fog, single_scattering, transmittance
-from fogproof.contracts import Reference
-from fogproof.errors import InvalidInputError, InvalidValueError, UnsupportedError, shorten
-from fogproof.scene import AnyMedium, Ray
+from fogproof.errors import InvalidInputError, InvalidValueError, shorten
 from fogproof.scene.files import read_fields
-from fogproof.scene.lights import LightField
-from fogproof.scene.occluders import OccluderField
-from fogproof.scene.shapes import ShapeField, Unbounded
-from fogproof.study.media import StudyMedium, built, sha256_of
-from fogproof.study.methods.paths import radiance_of_ball
-from fogproof.study.methods.table import MethodField
+from fogproof.study.media import sha256_of
+from fogproof.study.methods.table import OWN, MethodField
+from fogproof.study.own_code import NAME, digest_of
+from fogproof.study.question import Question
 from fogproof.validate import number
 
-Quantity = Literal["transmittance", "fog", "airlight", "radiance"]
-UNITS = {"transmittance": "1", "fog": "W/(m^2 sr)", "airlight": "W/(m^2 sr)", "radiance": "W/(m^2 sr)"}
 LARGEST_COUNT = 1 << 40
 
 
-@dataclass(frozen=True, eq=False)
-class StudyScene:
-    """One scene, and the estimators that are measured in it.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class StudyScene(Question):
+    """A question, and the methods that are measured by it.
 
-    quantity    what they estimate: "transmittance" along the ray; "fog", the radiance in constant in-scattered light; "airlight",
-                the radiance scattered once from the light; "radiance", scattered any number of times in a ball under a sky
     estimators  see `methods`
-    question    which question the scene helps to answer, "" for none
+    question    what the scene helps to find out, in words; "" for nothing
     """
 
-    name: str
-    quantity: Quantity
-    medium: StudyMedium
-    ray: Ray
     estimators: tuple[MethodField, ...]
     question: str = ""
-    light: LightField | None = None
-    occluders: tuple[OccluderField, ...] = ()
-    shape: ShapeField = field(default_factory=Unbounded)
-    ambient: float = 0.0
-    background: float = 0.0
 
     def __post_init__(self) -> None:
-        number("ambient", self.ambient, "must be finite and >= 0 [W/(m^2 sr)]", 0)
-        number("background", self.background, "must be finite and >= 0 [W/(m^2 sr)]", 0)
-        if self.quantity not in get_args(Quantity):
-            raise InvalidValueError("quantity", f"must be one of {', '.join(get_args(Quantity))}", self.quantity)
-        if self.ray.shape:
-            raise InvalidValueError("ray", "must be one ray", list(self.ray.shape))
+        super().__post_init__()
         if not self.estimators:
             raise InvalidValueError("estimators", "must name at least one", [])
-
-    @cached_property
-    def matter(self) -> AnyMedium:
-        """The medium, built; it is grey."""
-        medium = built(self.medium)
-        if medium.channels is not None:
-            what = f"the medium of scene {self.name!r} has {medium.channels} channels"
-            raise UnsupportedError(f"a study follows one channel, {what}: give numbers, not lists", "medium")
-        return medium
-
-    def reference(self) -> Reference:
-        """Return what the oracle says."""
-        match self.quantity:
-            case "transmittance":
-                return transmittance(self.matter, self.ray)
-            case "fog":
-                return ambient_fog(self.matter, self.ray, self.ambient, self.background)
-            case "radiance":
-                return radiance_of_ball(self)
-        if self.light is None:
-            raise InvalidValueError("light", "must be given for the airlight", None, "add a light to the scene")
-        return single_scattering(self.matter, self.ray, self.light, occluders=self.occluders)
 
 
 @dataclass(frozen=True, eq=False)
@@ -199,15 +153,26 @@ def _scene_tables(table: Any) -> list[dict[str, Any]]:
 
 
 def _normalised(table: dict[str, Any], folder: str) -> dict[str, Any]:
-    """Return the table with estimators that are mere names spelt out, and files of voxels signed."""
+    """Return the table with estimators that are mere names spelt out, and files of voxels and others' estimators signed."""
     for scene in _scene_tables(table):
         names = scene.get("estimators")
         if isinstance(names, list):
-            scene["estimators"] = [{"kind": name} if isinstance(name, str) else name for name in names]
+            tables = [{"kind": name} if isinstance(name, str) else name for name in names]
+            scene["estimators"] = [_signed(each, folder) for each in tables]
         medium = scene.get("medium")
         if isinstance(medium, dict) and medium.get("kind") == "grid-file" and isinstance(medium.get("path"), str):
             medium["sha256"] = sha256_of(Path(folder) / medium["path"])
     return table
+
+
+def _signed(estimator: Any, folder: str) -> Any:
+    """Return the table of an estimator; of one's own, "module:Estimator", with the digest of its sources."""
+    kind = estimator.get("kind") if isinstance(estimator, dict) else None
+    named = NAME.fullmatch(kind) if isinstance(kind, str) and kind != OWN else None
+    if named is None:
+        return estimator
+    options = {key: value for key, value in estimator.items() if key != "kind"}
+    return {"kind": OWN, "source": kind, "options": options, "sha256": digest_of(named[1], folder)}
 
 
 def _with_paths(table: dict[str, Any], folder: str) -> dict[str, Any]:
@@ -216,4 +181,8 @@ def _with_paths(table: dict[str, Any], folder: str) -> dict[str, Any]:
         medium = scene.get("medium")
         if isinstance(medium, dict) and medium.get("kind") == "grid-file" and isinstance(medium.get("path"), str):
             medium["path"] = str(Path(folder) / medium["path"])
+        estimators = scene.get("estimators")
+        for estimator in estimators if isinstance(estimators, list) else ():
+            if isinstance(estimator, dict) and estimator.get("kind") == OWN:
+                estimator["folder"] = folder
     return table

@@ -63,7 +63,7 @@ def measure(cell: Cell, levels: Sequence[Level], alpha: float, twin: Measured | 
         "points": cell.points,
         "axis": cell.method.axis,
         "expected": cell.method.expected,
-        "reason": cell.method.reason,
+        "reason": cell.method.bias,
         "outcome": judged.outcome,
         "warning": judged.warning,
         "findings": judged.findings,

@@ -22,10 +22,11 @@ from fogproof.scene import Scattering, Scene
 from fogproof.study.aggregate import levels_of
 from fogproof.study.cells import Cell
 from fogproof.study.convergence import CONFIDENCE
-from fogproof.study.files import UNITS, Study, StudyScene
+from fogproof.study.files import Study, StudyScene
 from fogproof.study.judgement import tests_of
 from fogproof.study.measures import Measured, measure
 from fogproof.study.plan import Batch, Batches
+from fogproof.study.question import UNITS
 from fogproof.study.ranking import ranked
 from fogproof.study.stored_batches import Store
 from fogproof.text import spreadsheet_cell
@@ -146,7 +147,7 @@ def _planned(scene: StudyScene) -> Scene:
     followed: dict[str, Scattering] = {"fog": "ambient", "airlight": "single"}
     background = 1.0 if scene.quantity == "transmittance" else scene.background if scene.quantity == "fog" else 0.0
     scattering = followed.get(scene.quantity, "none")
-    return Scene(scene.matter, scene.ray, scattering, scene.light, scene.occluders, scene.ambient, background)
+    return Scene(scene.built_medium, scene.ray, scattering, scene.light, scene.occluders, scene.ambient, background)
 
 
 def _digest(scenes: list[dict[str, Any]]) -> str:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 from fogproof.study.batches import BatchResult, run_batch
 from fogproof.study.cells import Cell
-from fogproof.study.executors import ClusterError, Crew
+from fogproof.study.executors import ClusterError, Workers
 from fogproof.study.files import Study
 from fogproof.study.plan import Batch
 from fogproof.study.stored_batches import Store
@@ -47,7 +47,7 @@ def draw_missing(
     cells: Sequence[Cell],
     batches: Sequence[Batch],
     store: Store,
-    crew: Crew,
+    pool: Workers,
     advance: Advance = lambda batch, result: None,
     draw: Draw = run_batch,
 ) -> None:
@@ -62,26 +62,26 @@ def draw_missing(
     work = _Work(deque(batch for batch in batches if batch.number not in done))
     try:
         while work.waiting or work.suspects or work.running:
-            while (batch := work.next(crew.slots)) is not None:
-                _hand_out(study, cells, batch, crew, work, draw)
+            while (batch := work.next(pool.slots)) is not None:
+                _hand_out(study, cells, batch, pool, work, draw)
             ready, _ = concurrent.futures.wait(work.running, return_when=concurrent.futures.FIRST_COMPLETED)
-            _collect(ready, work, store, crew, advance)
+            _collect(ready, work, store, pool, advance)
     except KeyboardInterrupt:
         _keep_what_is_under_way(work, store)
         raise
 
 
-def _hand_out(study: Study, cells: Sequence[Cell], batch: Batch, crew: Crew, work: _Work, draw: Draw) -> None:
+def _hand_out(study: Study, cells: Sequence[Cell], batch: Batch, pool: Workers, work: _Work, draw: Draw) -> None:
     reference = float(cells[batch.cell].reference.value)
     try:
-        future = crew.executor.submit(draw, study.text, study.folder, batch, reference)
+        future = pool.executor.submit(draw, study.text, study.folder, batch, reference)
     except BrokenExecutor:  # it broke while nobody was looking
-        crew.restart()
-        future = crew.executor.submit(draw, study.text, study.folder, batch, reference)
+        pool.restart()
+        future = pool.executor.submit(draw, study.text, study.folder, batch, reference)
     work.running[future] = batch
 
 
-def _collect(ready: set[Future[BatchResult]], work: _Work, store: Store, crew: Crew, advance: Advance) -> None:
+def _collect(ready: set[Future[BatchResult]], work: _Work, store: Store, pool: Workers, advance: Advance) -> None:
     """Store what is ready; see to what has failed."""
     good, broken = [], []
     for future in ready:
@@ -99,15 +99,15 @@ def _collect(ready: set[Future[BatchResult]], work: _Work, store: Store, crew: C
         for batch, result in good:
             advance(batch, result)
     if broken:
-        _after_a_death(broken, work, store, crew, advance)
+        _after_a_death(broken, work, store, pool, advance)
 
 
-def _after_a_death(broken: list[Batch], work: _Work, store: Store, crew: Crew, advance: Advance) -> None:
+def _after_a_death(broken: list[Batch], work: _Work, store: Store, pool: Workers, advance: Advance) -> None:
     """A worker has died, and nobody knows which batch did it: each is drawn again alone, where a second death would tell."""
     alone = len(broken) == 1 and not work.running
     broken += work.running.values()
     work.running.clear()
-    crew.restart()
+    pool.restart()
     for batch in broken:
         if alone:
             _again(batch, "the worker that drew it died", work, store, advance)

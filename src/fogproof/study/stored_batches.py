@@ -41,7 +41,7 @@ class Store:
 
     def done(self) -> set[int]:
         """Return the numbers of the batches that are there."""
-        with self._told():
+        with self._faults_in_words():
             found: set[int] = set()
             for key, stretch in zip(self._keys, self._batches.stretches, strict=True):
                 rows = self._connection.execute("select id from batches where id >= ? and id < ?", (key, key + _ROOM))
@@ -50,7 +50,7 @@ class Store:
 
     def add(self, results: Iterable[BatchResult]) -> None:
         """Add batches, all of them or none; one that is there already stays as it is."""
-        with self._told(), self._connection:
+        with self._faults_in_words(), self._connection:
             rows = [self._packed(result) for result in results]
             self._connection.executemany("insert or ignore into batches values (?, ?, ?, ?, ?, ?, ?)", rows)
             self._connection.executemany("delete from failures where id = ?", [(row[0],) for row in rows])
@@ -59,31 +59,31 @@ class Store:
         """Note that a batch could not be drawn."""
         error = error.encode("utf-8", "backslashreplace").decode()
         row = (self._key(number)[0], attempts, error)
-        with self._told(), self._connection:
+        with self._faults_in_words(), self._connection:
             self._connection.execute("insert or replace into failures values (?, ?, ?, ?)", (*row, _sum(*row)))
 
     def failures(self) -> list[tuple[int, int, str]]:
         """Return (batch, attempts, error) of the batches that could not be drawn."""
-        with self._told():
+        with self._faults_in_words():
             rows = self._checked("failures", "select id, attempts, error, sum from failures")
             return sorted((self._number(key), attempts, error) for key, attempts, error in rows)
 
     def begin(self, started: str, environment: str) -> None:
         """Note that a session of work begins."""
-        with self._told(), self._connection:
+        with self._faults_in_words(), self._connection:
             number = self._connection.execute("select coalesce(max(id), 0) + 1 from sessions").fetchone()[0]
             row = (number, started, environment)
             self._connection.execute("insert into sessions values (?, ?, ?, ?)", (*row, _sum(*row)))
 
     def sessions(self) -> list[tuple[str, str]]:
         """Return (started, environment) of every session of work."""
-        with self._told():
+        with self._faults_in_words():
             rows = self._checked("sessions", "select id, started, environment, sum from sessions order by id")
             return [(started, environment) for _, started, environment in rows]
 
     def rows(self) -> Iterator[Row]:
         """Yield all batches by number, as bytes; one that is not what was written raises."""
-        with self._told():
+        with self._faults_in_words():
             for key, stretch, identity in zip(self._keys, self._batches.stretches, self._identities, strict=True):
                 query = f"select {_COLUMNS} from batches where id >= ? and id < ? order by id"
                 # A cursor that is left open keeps the file locked, even when its connection has been closed.
@@ -102,7 +102,7 @@ class Store:
 
     def take_up(self, study: Study) -> None:
         """Make this the store of a study, which may be new, or ask for more than what the file was made for."""
-        with self._told():
+        with self._faults_in_words():
             known = self._known()
             lost = set(known) - set(self._identities)
             wanted = dict(zip(self._identities, self._batches.stretches, strict=True))
@@ -203,7 +203,7 @@ class Store:
         return *row, _sum(identity, *row)
 
     @contextlib.contextmanager
-    def _told(self) -> Iterator[None]:
+    def _faults_in_words(self) -> Iterator[None]:
         try:
             yield
         except sqlite3.Error as error:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
-
-import numpy as np
+from typing import Any, Literal
 
 from fogproof.analytic import single_scattering_variance
 from fogproof.capabilities import is_uniform
@@ -13,30 +11,26 @@ from fogproof.contracts import Estimator, Reference
 from fogproof.errors import InvalidValueError
 from fogproof.estimators import Airlight, MarchedAirlight
 from fogproof.scene import PointLight
-from fogproof.scene.lights import Light as AnyLight
-
-if TYPE_CHECKING:
-    from fogproof.study.files import StudyScene
+from fogproof.scene.lights import Light
+from fogproof.study.methods.method import NO_VARIANCE, Method
+from fogproof.study.question import Question
 
 ShadowRays = Literal["exact", "ratio"]
 
 
-def _light(scene: StudyScene) -> AnyLight:
+def _light(scene: Question) -> Light:
     if scene.light is None:
         raise InvalidValueError("light", "must be given for the airlight", None, "add a light to the scene")
     return scene.light
 
 
 @dataclass(frozen=True)
-class Light:
+class SingleScattering(Method):
     """One scattering event on the ray, placed at random; placing as in `Airlight`, shadow rays too."""
 
     placing: Literal["equiangular", "free-path", "distance", "uniform"] = "equiangular"
     shadow_rays: ShadowRays = "exact"
-    quantity: ClassVar[str] = "airlight"
-    axis: ClassVar[str] = "samples"
-    expected: ClassVar[str] = "not rejected"
-    reason: ClassVar[str] = ""
+    quantity = "airlight"
 
     @property
     def title(self) -> str:
@@ -48,15 +42,15 @@ class Light:
         """One uniform, unless shadow rays are tracked."""
         return 1 if self.shadow_rays == "exact" else None
 
-    def make(self, scene: StudyScene, count: int) -> Estimator:
+    def make(self, scene: Question, count: int) -> Estimator:
         """Return the estimator."""
         return Airlight(
-            scene.matter, scene.ray, _light(scene), self.placing, scene.occluders, shadow_rays=self.shadow_rays
+            scene.built_medium, scene.ray, _light(scene), self.placing, scene.occluders, shadow_rays=self.shadow_rays
         )
 
-    def variance(self, scene: StudyScene) -> Reference | None:
+    def variance(self, scene: Question) -> Reference | None:
         """Return it for a point light in a homogeneous medium."""
-        medium: Any = scene.matter
+        medium: Any = scene.built_medium
         plain = is_uniform(medium) and isinstance(scene.light, PointLight) and not scene.occluders
         if not plain or self.shadow_rays != "exact":
             return None
@@ -65,32 +59,27 @@ class Light:
 
 
 @dataclass(frozen=True)
-class MixedLight:
+class MixedSingleScattering(Method):
     """Equiangular or distance sampling by the toss of a coin, combined by the balance heuristic (MIS)."""
 
     shadow_rays: ShadowRays = "exact"
-    quantity: ClassVar[str] = "airlight"
-    title: ClassVar[str] = "Equiangular and distance sampling by MIS"
-    axis: ClassVar[str] = "samples"
-    expected: ClassVar[str] = "not rejected"
-    reason: ClassVar[str] = ""
+    quantity = "airlight"
+    title = "Equiangular and distance sampling by MIS"
 
     @property
     def dimensions(self) -> int | None:
         """One uniform, unless shadow rays are tracked."""
         return 1 if self.shadow_rays == "exact" else None
 
-    def make(self, scene: StudyScene, count: int) -> Estimator:
+    def make(self, scene: Question, count: int) -> Estimator:
         """Return the estimator."""
-        return Airlight(scene.matter, scene.ray, _light(scene), "mixed", scene.occluders, shadow_rays=self.shadow_rays)
-
-    def variance(self, scene: StudyScene) -> Reference | None:
-        """Return None: the oracle has no second moment of the mixture."""
-        return None
+        return Airlight(
+            scene.built_medium, scene.ray, _light(scene), "mixed", scene.occluders, shadow_rays=self.shadow_rays
+        )
 
 
 @dataclass(frozen=True)
-class MarchedLight:
+class MarchedSingleScattering(Method):
     """A Riemann sum along the ray.
 
     rule   "midpoint" and "right" are not random, and the study's counts are their steps; "jittered" draws one place in each of
@@ -99,7 +88,7 @@ class MarchedLight:
 
     rule: Literal["midpoint", "right", "jittered"] = "midpoint"
     steps: int = 16
-    quantity: ClassVar[str] = "airlight"
+    quantity = "airlight"
 
     def __post_init__(self) -> None:
         if self.rule != "jittered" and self.steps != 16:
@@ -120,13 +109,8 @@ class MarchedLight:
         return "samples" if self.rule == "jittered" else "steps"
 
     @property
-    def expected(self) -> str:
+    def bias(self) -> str:
         """A Riemann sum is biased, a jittered one is not."""
-        return "not rejected" if self.rule == "jittered" else "rejected"
-
-    @property
-    def reason(self) -> str:
-        """Why."""
         return "" if self.rule == "jittered" else "a Riemann sum is biased; the bias falls with the step"
 
     @property
@@ -134,13 +118,13 @@ class MarchedLight:
         """One uniform a step."""
         return self.steps if self.rule == "jittered" else None
 
-    def make(self, scene: StudyScene, count: int) -> Estimator:
+    def make(self, scene: Question, count: int) -> Estimator:
         """Return the estimator."""
         steps = self.steps if self.rule == "jittered" else count
-        return MarchedAirlight(scene.matter, scene.ray, _light(scene), steps, self.rule, scene.occluders)
+        return MarchedAirlight(scene.built_medium, scene.ray, _light(scene), steps, self.rule, scene.occluders)
 
-    def variance(self, scene: StudyScene) -> Reference | None:
+    def variance(self, scene: Question) -> Reference | None:
         """Return 0 where nothing is random."""
         if self.rule == "jittered":
             return None
-        return Reference(np.asarray(0.0), np.asarray(0.0), "nothing is random", "")
+        return NO_VARIANCE

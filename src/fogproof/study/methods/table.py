@@ -1,83 +1,58 @@
-"""The estimators a study can measure: how each is made for a scene, and what the oracle knows of its variance.
-
-A method is a frozen dataclass whose fields are its options in the study file, with
-
-    quantity    what it estimates; a scene takes the methods of its own quantity
-    title       in words
-    axis        what the study's sample counts are to it: "samples" of a random estimator, "steps" of a march that is not
-                random, or "nothing" for an exact one
-    expected    "rejected" for one that is biased by construction, and `reason` says why
-    make        (scene, count) -> an `Estimator`
-    variance    scene -> the exact variance of one realisation as a `Reference`, or None where the oracle has none
-    dimensions  uniforms a realisation if it is a pure function of them, which then can be Sobol points; else None
-
-To add one, write such a class and name it in `METHODS`.
-"""
+"""The estimators a study can measure. To add one, write a class of `Method` and name it in `METHODS`; for one's own see `own`."""
 
 from __future__ import annotations
 
 from dataclasses import fields
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Protocol
+from typing import Annotated, Any
 
-from fogproof.contracts import Estimator, Reference
 from fogproof.scene.kinds import ByKind
-from fogproof.study.methods.airlight import Light, MarchedLight, MixedLight
+from fogproof.study.methods.airlight import MarchedSingleScattering, MixedSingleScattering, SingleScattering
 from fogproof.study.methods.fog import AnalogFogMethod, CertainCollision
+from fogproof.study.methods.method import Method
+from fogproof.study.methods.own import Own
 from fogproof.study.methods.paths import PathTracing
-from fogproof.study.methods.transmittance import Analog, Delta, March, Ratio, Regular, ResidualRatio
+from fogproof.study.methods.transmittance import (
+    Analog,
+    Delta,
+    MarchedTransmittanceMethod,
+    Ratio,
+    Regular,
+    ResidualRatio,
+)
 
-if TYPE_CHECKING:
-    from fogproof.study.files import StudyScene
-
-Axis = Literal["samples", "steps", "nothing"]
-
-
-class Method(Protocol):
-    """What every method has; see the head of this module."""
-
-    quantity: Any
-    title: Any
-    axis: Any
-    expected: Any
-    reason: Any
-
-    def make(self, scene: StudyScene, count: int) -> Estimator:
-        """Return the estimator."""
-
-    def variance(self, scene: StudyScene) -> Reference | None:
-        """Return the exact variance of one realisation."""
-
-    @property
-    def dimensions(self) -> int | None:
-        """Uniforms a realisation."""
-
-
-METHODS: dict[str, type] = {
+METHODS: dict[str, type[Method]] = {
     "regular": Regular,
     "analog": Analog,
     "delta": Delta,
     "ratio": Ratio,
     "residual-ratio": ResidualRatio,
-    "march": March,
+    "march": MarchedTransmittanceMethod,
     "analog-fog": AnalogFogMethod,
     "certain-collision": CertainCollision,
-    "airlight": Light,
-    "mis": MixedLight,
-    "marched-airlight": MarchedLight,
+    "airlight": SingleScattering,
+    "mis": MixedSingleScattering,
+    "marched-airlight": MarchedSingleScattering,
     "path-tracing": PathTracing,
 }
 """The `kind` of each method in study files."""
 
-MethodField = Annotated[Any, ByKind(METHODS)]
+OWN = "module:Estimator"
+"""The `kind` that a study's normalised text gives to an estimator of one's own."""
+
+MethodField = Annotated[Any, ByKind({**METHODS, OWN: Own})]
 
 
 def kind_of(method: Any) -> str:
     """Return the `kind` of a method."""
+    if isinstance(method, Own):
+        return method.source
     return next(kind for kind, cls in METHODS.items() if type(method) is cls)
 
 
 def options_of(method: Any) -> dict[str, Any]:
     """Return the options of a method that are not the defaults."""
+    if isinstance(method, Own):
+        return method.options
     return {f.name: getattr(method, f.name) for f in fields(method) if getattr(method, f.name) != f.default}
 
 

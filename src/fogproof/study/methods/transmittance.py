@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -22,9 +22,8 @@ from fogproof.estimators import (
 )
 from fogproof.estimators.tracking.medium_data import extremes
 from fogproof.scene import Ray, VoxelGrid
-
-if TYPE_CHECKING:
-    from fogproof.study.files import StudyScene
+from fogproof.study.methods.method import NO_VARIANCE, Method
+from fogproof.study.question import Question
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,111 +39,95 @@ class _Walks:
 
 
 @dataclass(frozen=True)
-class Regular:
+class Regular(Method):
     """Every voxel on the way in closed form."""
 
-    quantity: ClassVar[str] = "transmittance"
-    title: ClassVar[str] = "Regular tracking"
-    axis: ClassVar[str] = "nothing"
-    expected: ClassVar[str] = "not rejected"
-    reason: ClassVar[str] = ""
-    dimensions: ClassVar[None] = None
+    quantity = "transmittance"
+    title = "Regular tracking"
+    axis = "nothing"
 
-    def make(self, scene: StudyScene, count: int) -> Estimator:
+    def make(self, scene: Question, count: int) -> Estimator:
         """Return the estimator."""
-        if not has_cells(scene.matter):
-            raise UnsupportedError(f"regular tracking needs a VoxelGrid, got {type(scene.matter).__name__}", "medium")
-        grid: Any = scene.matter
+        if not has_cells(scene.built_medium):
+            raise UnsupportedError(
+                f"regular tracking needs a VoxelGrid, got {type(scene.built_medium).__name__}", "medium"
+            )
+        grid: Any = scene.built_medium
         return _Walks(grid, scene.ray)
 
-    def variance(self, scene: StudyScene) -> Reference | None:
+    def variance(self, scene: Question) -> Reference | None:
         """Return 0."""
-        return Reference(np.asarray(0.0), np.asarray(0.0), "nothing is random", "")
+        return NO_VARIANCE
 
 
 @dataclass(frozen=True)
-class Analog:
+class Analog(Method):
     """A free path by the closed inverse: 1 if it reaches the end of the ray."""
 
-    quantity: ClassVar[str] = "transmittance"
-    title: ClassVar[str] = "Free path"
-    axis: ClassVar[str] = "samples"
-    expected: ClassVar[str] = "not rejected"
-    reason: ClassVar[str] = ""
-    dimensions: ClassVar[int] = 1
+    quantity = "transmittance"
+    title = "Free path"
+    dimensions = 1
 
-    def make(self, scene: StudyScene, count: int) -> Estimator:
+    def make(self, scene: Question, count: int) -> Estimator:
         """Return the estimator."""
-        return AnalogTransmittance(along(scene.matter, scene.ray), float(scene.ray.length))
+        return AnalogTransmittance(along(scene.built_medium, scene.ray), float(scene.ray.length))
 
-    def variance(self, scene: StudyScene) -> Reference | None:
+    def variance(self, scene: Question) -> Reference | None:
         """Return T (1 - T)."""
-        return transmittance_variance(scene.matter, scene.ray, "delta")
+        return transmittance_variance(scene.built_medium, scene.ray, "delta")
 
 
 @dataclass(frozen=True)
-class Delta:
+class Delta(Method):
     """Delta tracking; majorant [1/m], None for the tightest known without a search."""
 
     majorant: float | None = None
-    quantity: ClassVar[str] = "transmittance"
-    title: ClassVar[str] = "Delta tracking"
-    axis: ClassVar[str] = "samples"
-    expected: ClassVar[str] = "not rejected"
-    reason: ClassVar[str] = ""
-    dimensions: ClassVar[None] = None
+    quantity = "transmittance"
+    title = "Delta tracking"
 
-    def make(self, scene: StudyScene, count: int) -> Estimator:
+    def make(self, scene: Question, count: int) -> Estimator:
         """Return the estimator."""
-        return DeltaTransmittance(scene.matter, scene.ray, self.majorant)
+        return DeltaTransmittance(scene.built_medium, scene.ray, self.majorant)
 
-    def variance(self, scene: StudyScene) -> Reference | None:
+    def variance(self, scene: Question) -> Reference | None:
         """Return T (1 - T), whatever the majorant."""
-        return transmittance_variance(scene.matter, scene.ray, "delta")
+        return transmittance_variance(scene.built_medium, scene.ray, "delta")
 
 
 @dataclass(frozen=True)
-class Ratio:
+class Ratio(Method):
     """Ratio tracking; majorant [1/m], None for the tightest known without a search."""
 
     majorant: float | None = None
-    quantity: ClassVar[str] = "transmittance"
-    title: ClassVar[str] = "Ratio tracking"
-    axis: ClassVar[str] = "samples"
-    expected: ClassVar[str] = "not rejected"
-    reason: ClassVar[str] = ""
-    dimensions: ClassVar[None] = None
+    quantity = "transmittance"
+    title = "Ratio tracking"
 
-    def make(self, scene: StudyScene, count: int) -> Estimator:
+    def make(self, scene: Question, count: int) -> Estimator:
         """Return the estimator."""
-        return RatioTransmittance(scene.matter, scene.ray, self.majorant)
+        return RatioTransmittance(scene.built_medium, scene.ray, self.majorant)
 
-    def variance(self, scene: StudyScene) -> Reference | None:
+    def variance(self, scene: Question) -> Reference | None:
         """Return T^2 (exp(integral of sigma_t^2 / majorant) - 1)."""
         majorant = self.majorant or _bounds(scene)[1]
-        return transmittance_variance(scene.matter, scene.ray, "ratio", majorant)
+        return transmittance_variance(scene.built_medium, scene.ray, "ratio", majorant)
 
 
 @dataclass(frozen=True)
-class ResidualRatio:
+class ResidualRatio(Method):
     """Residual ratio tracking; majorant and control [1/m]."""
 
     majorant: float | None = None
     control: float | Literal["low", "middle"] = "low"
-    quantity: ClassVar[str] = "transmittance"
-    title: ClassVar[str] = "Residual ratio tracking"
-    axis: ClassVar[str] = "samples"
-    expected: ClassVar[str] = "not rejected"
-    reason: ClassVar[str] = ""
-    dimensions: ClassVar[None] = None
+    quantity = "transmittance"
+    title = "Residual ratio tracking"
 
-    def make(self, scene: StudyScene, count: int) -> Estimator:
+    def make(self, scene: Question, count: int) -> Estimator:
         """Return the estimator."""
-        return ResidualRatioTransmittance(scene.matter, scene.ray, self.majorant, self.control)
+        return ResidualRatioTransmittance(scene.built_medium, scene.ray, self.majorant, self.control)
 
-    def variance(self, scene: StudyScene) -> Reference | None:
+    def variance(self, scene: Question) -> Reference | None:
         """Return T^2 (exp(integral of (sigma_t - control)^2 / residual majorant) - 1); a grid's control ends with the grid."""
-        if has_cells(scene.matter):
+        if has_cells(scene.built_medium):
             return None
         low, high = _bounds(scene)
         high = self.majorant or high
@@ -152,33 +135,31 @@ class ResidualRatio:
         named = {"low": low, "middle": 0.5 * (low + high)}
         control = named[self.control] if isinstance(self.control, str) else self.control
         residual = max(high - control, control - low if control > 0 else 0.0)
-        return transmittance_variance(scene.matter, scene.ray, "residual-ratio", residual, control)
+        return transmittance_variance(scene.built_medium, scene.ray, "residual-ratio", residual, control)
 
 
 @dataclass(frozen=True)
-class March:
+class MarchedTransmittanceMethod(Method):
     """Ray marching, the study's counts being its steps."""
 
     rule: Literal["midpoint", "right"] = "midpoint"
-    quantity: ClassVar[str] = "transmittance"
-    title: ClassVar[str] = "Ray marching"
-    axis: ClassVar[str] = "steps"
-    expected: ClassVar[str] = "rejected"
-    reason: ClassVar[str] = "a Riemann sum is biased; the bias falls with the step"
-    dimensions: ClassVar[None] = None
+    quantity = "transmittance"
+    title = "Ray marching"
+    axis = "steps"
+    bias = "a Riemann sum is biased; the bias falls with the step"
 
-    def make(self, scene: StudyScene, count: int) -> Estimator:
+    def make(self, scene: Question, count: int) -> Estimator:
         """Return the estimator with so many steps."""
         step = float(scene.ray.length) / count * (1 + 1e-12)  # rounding must not make it one more
-        return MarchedTransmittance(scene.matter, scene.ray, step, self.rule)
+        return MarchedTransmittance(scene.built_medium, scene.ray, step, self.rule)
 
-    def variance(self, scene: StudyScene) -> Reference | None:
+    def variance(self, scene: Question) -> Reference | None:
         """Return 0."""
-        return Reference(np.asarray(0.0), np.asarray(0.0), "nothing is random", "")
+        return NO_VARIANCE
 
 
-def _bounds(scene: StudyScene) -> tuple[float, float]:
+def _bounds(scene: Question) -> tuple[float, float]:
     """Return what a tracker takes for the least and the greatest extinction on the way [1/m]."""
     ray = scene.ray
-    low, high = extremes(scene.matter, ray.origin[None], ray.direction[None], ray.length[None])
+    low, high = extremes(scene.built_medium, ray.origin[None], ray.direction[None], ray.length[None])
     return float(low[0]), float(high[0])
