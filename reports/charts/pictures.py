@@ -13,7 +13,7 @@ from fogproof.reports.charts.sheet_png import png
 from fogproof.reports.files import write_file
 
 
-class Chart(Protocol):
+class PictureChart(Protocol):
     """Data of one figure that draws itself."""
 
     def draw(self, sheet: Sheet) -> str:
@@ -53,7 +53,7 @@ class Picture:
         return f'<svg{"".join(kept)} aria-hidden="true">{rest}'
 
 
-def render(chart: Chart, stem: str, size: tuple[float, float] = (560, 340)) -> Picture:
+def render(chart: PictureChart, stem: str, size: tuple[float, float] = (560, 340)) -> Picture:
     """Draw on a new sheet of `size` [px] and return it as SVG and PNG; equal data give equal bytes."""
     sheet = Sheet(*size, PAPER)
     words = chart.draw(sheet)

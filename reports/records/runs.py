@@ -58,7 +58,7 @@ class Case:
 
 
 @dataclass(frozen=True)
-class Run:
+class RunRecord:
     """A whole run, its cases in the order of the catalogue.
 
     asked  the names of the cases that were to run; () in records of old, where those that ran are all that is known
@@ -92,10 +92,10 @@ class Run:
         return f"Unfinished: {len(self.cases)} of {whole}" if self.missing or self.state == "interrupted" else ""
 
 
-def parse_record(record: Any, origin: str = "record") -> Run:
+def parse_record(record: Any, origin: str = "record") -> RunRecord:
     """Return the record as dataclasses; `origin` is where it came from, for the message of an `InvalidInputError`."""
     check_schema(record, origin)
-    run = validated(Run, record, origin)
+    run = validated(RunRecord, record, origin)
     names: set[str] = set()
     for number, case in enumerate(run.cases):
         if case.name in names:
@@ -172,7 +172,7 @@ def _lines(record: dict[str, Any]) -> str:
     return "{\n" + ",\n".join(lines) + "\n}\n"
 
 
-def write_csv(run: Run, folder: str | Path) -> Path:
+def write_csv(run: RunRecord, folder: str | Path) -> Path:
     """Write `folder/results.csv`, one row a case, and return its path.
 
     No text in it can be taken for a formula, see `spreadsheet_cell`.
@@ -185,7 +185,7 @@ def write_csv(run: Run, folder: str | Path) -> Path:
     return write_file(Path(folder) / "results.csv", out.getvalue())
 
 
-def _row(case: Case, run: Run) -> dict[str, Any]:
+def _row(case: Case, run: RunRecord) -> dict[str, Any]:
     verdict, resolution = case.verdict, case.verdict.resolution if case.verdict is not None else None
     twin, plan = case.twin_result, case.plan
     rejecting = (
