@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from fogproof.analytic.arithmetic.error_free import EPS
+from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.analytic.declaration import MEAN_FREE_PATHS, quantity
 from fogproof.analytic.multiple.ball_solution import (
     SOURCE,
@@ -123,7 +123,10 @@ def ball_albedo_orders(radius: float, count: Count) -> Reference:
 
     At albedo c the n-th order is c^n times that, and their sum over all n is `ball_albedo`.
     """
-    return _orders(radius, np.zeros(()), count, _albedo, ball_albedo)
+    R = float(_one_radius(radius))
+    straight = mean_transmittance(R)
+    collides = min(1 - straight + 4 * EPS, 4 * R / 3)  # 4 R / 3 is the mean chord
+    return _orders(R, np.zeros(()), count, _albedo, ball_albedo, straight, collides)
 
 
 @quantity(
@@ -139,9 +142,14 @@ def ball_radiance_orders(radius: float, impact: FloatArray, count: Count) -> Ref
     impact  (...) distance of the ray's line from the centre, in [0, radius]
     count   the highest order, a whole number >= 0
     """
-    return _orders(
-        radius, _inside("impact", impact, radius), count, _radiance, lambda c, R: ball_radiance(c, R, impact)
-    )
+    R, places = float(_one_radius(radius)), _inside("impact", impact, radius)
+    chord = 2 * np.sqrt((R - places) * (R + places))
+    with np.errstate(under="ignore"):
+        straight, collides = np.exp(-chord), -np.expm1(-chord) * (1 + 8 * EPS)
+    found = _orders(R, places, count, _radiance, lambda c, R: ball_radiance(c, R, places), straight, collides)
+    error = found.error.copy()
+    error[..., 0] += 4 * EPS * np.minimum(chord, 800.0) * straight + TINY
+    return Reference(found.value, error, found.method, found.source)
 
 
 def _inside(name: str, value: Any, radius: Any) -> np.ndarray:
@@ -194,10 +202,16 @@ def _finest(radius: float, places: np.ndarray) -> float:
     return float(min(2 * radius, 10 * np.min(scale[scale > 0], initial=np.inf)))
 
 
-def _orders(radius: Any, places: np.ndarray, count: int, evaluate: Evaluate, known: Any) -> Reference:
+def _one_radius(radius: Any) -> np.ndarray:
     R = checked_length("radius", radius)
     if R.ndim or R == 0:
         raise InvalidValueError("radius", "must be a single number > 0", radius)
+    return R
+
+
+def _orders(
+    R: float, places: np.ndarray, count: int, evaluate: Evaluate, known: Any, straight: Any, collides: Any
+) -> Reference:
     nodes = quadrature(_finest(float(R), places.ravel()), COMPLEX)
 
     def solution(albedos: np.ndarray) -> np.ndarray:
@@ -205,4 +219,11 @@ def _orders(radius: Any, places: np.ndarray, count: int, evaluate: Evaluate, kno
         found = [evaluate(c, ball, places.ravel(), COMPLEX) for c, ball in zip(albedos, balls, strict=True)]
         return np.stack(found, axis=-1).reshape(*places.shape, len(albedos))
 
-    return taylor_coefficients(solution, checked_count("count", count), known=lambda c: known(c, R), source=SOURCE)
+    return taylor_coefficients(
+        solution,
+        checked_count("count", count),
+        known=lambda c: known(c, R),
+        source=SOURCE,
+        first=np.asarray(straight),
+        most=np.asarray(collides),
+    )

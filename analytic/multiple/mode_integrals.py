@@ -19,6 +19,9 @@ from fogproof.analytic.arithmetic.gauss_legendre import RULES
 
 _NODES, _WEIGHTS = RULES[12]
 
+FARTHEST = 1.7e308
+"""Optical depth along a ray beyond which nothing more changes."""
+
 
 class Collected(NamedTuple):
     """Integrals of exp(-way/mu) over way/mu, the way from the source to the lit or to the dark side; from u and from v."""
@@ -36,12 +39,12 @@ def collected(k: np.ndarray, tau: np.ndarray, mu: np.ndarray) -> Collected:
     """
     k, tau, mu = np.broadcast_arrays(k, tau, mu)
     with np.errstate(all="ignore"):
-        z, s, bend = k * tau, tau / mu, k * mu
+        z, s, bend = k * tau, np.minimum(tau / mu, FARTHEST), k * mu
         mode, ray = np.exp(-z), np.exp(-s)
         v_dark = -np.expm1(-(z + s)) / (1 + bend)
-        apart = np.abs(z - s)
+        apart = s * np.abs(1 - bend)
         near = apart < 1e-8
-        away = np.where(near, s * (1 - apart / 2), -np.expm1(-apart) / np.where(near, 1.0, np.abs(1 - bend)))
+        away = s * np.where(near, 1 - apart / 2, -np.expm1(-apart) / np.where(near, 1.0, apart))
         v_lit = np.maximum(mode, ray) * away
         coth, csch = z_coth(z), z_csch(z)
         # Twice by parts where the mode changes slowly along the ray, else by the two exponentials of sinh.
@@ -61,10 +64,12 @@ def collected(k: np.ndarray, tau: np.ndarray, mu: np.ndarray) -> Collected:
 def z_coth(z: Any) -> np.ndarray:
     """Return z coth z, 1 at z = 0."""
     small = np.abs(z) < 1e-4
-    return np.where(small, 1 + z * z / 3, z / np.where(small, 1.0, np.tanh(z)))
+    near = np.where(small, z, 0.0)
+    return np.where(small, 1 + near * near / 3, z / np.where(small, 1.0, np.tanh(z)))
 
 
 def z_csch(z: Any) -> np.ndarray:
     """Return z / sinh z, 1 at z = 0."""
     small, decay = np.abs(z) < 1e-4, np.exp(-z)
-    return np.where(small, 1 - z * z / 6, 2 * z * decay / np.where(small, 1.0, -np.expm1(-2 * z)))
+    near = np.where(small, z, 0.0)
+    return np.where(small, 1 - near * near / 6, 2 * z * decay / np.where(small, 1.0, -np.expm1(-2 * z)))

@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from fogproof.analytic.arithmetic.error_free import EPS
+from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.contracts import Reference
 
 METHOD = "Cauchy's integral in the complex plane of albedos"
@@ -27,6 +27,8 @@ def taylor_coefficients(
     source: str,
     shares: Sequence[float] = (1.0,),
     growth: float = 1.0,
+    first: np.ndarray | None = None,
+    most: np.ndarray | None = None,
 ) -> Reference:
     """Return the coefficients 0 … count of a power series, (..., count + 1).
 
@@ -34,17 +36,38 @@ def taylor_coefficients(
     known     the same at a real albedo, with its error: what the solution is off by there, it is taken to be everywhere
     shares    of the radius at which to look too: the first coefficients may be much smaller than the others, and on a
               small circle so is the error; each coefficient is taken from where its error is least
+    first     (...) the coefficient 0, if it is known: what the solution gets wrong of it counts as its error for all of them
+    most      (...) what the others are at most, if that is known; they are never negative
     growth    the n-th coefficient is in [0, growth^(n - 1)]: the chance at most that what has scattered collides again
 
     Error: radius^N from the coefficients not resolved, and ten times that of the solution, over radius^n.
     """
+    if most is not None and first is not None and np.all(most <= EXPECTED):
+        others = np.repeat(most[..., None], count, axis=-1) / 2
+        return _with_first(first, others, others, METHOD, source)
     points = 64 + 2 * count
     largest = EXPECTED ** (1 / (points + count)) / growth
-    found = [_on_a_circle(solution, count, points, largest * share, growth, known) for share in shares]
+    found = [_on_a_circle(solution, count, points, largest * share, growth, known, first) for share in shares]
     value, error = found[0]
     for other, its_error in found[1:]:
         value, error = np.where(its_error < error, other, value), np.minimum(its_error, error)
-    return Reference(value, error, METHOD, source)
+    if most is not None:
+        low, high = np.maximum(value - error, 0.0), np.minimum(value + error, most[..., None])
+        error = np.where(high < low, error, (high - low) / 2)
+        value = np.where(high < low, value, low + error)
+    if first is None:
+        return Reference(value, error, METHOD, source)
+    return _with_first(first, value[..., 1:], error[..., 1:], METHOD, source)
+
+
+def _with_first(first: np.ndarray, value: np.ndarray, error: np.ndarray, method: str, source: str) -> Reference:
+    exact = first[..., None]
+    return Reference(
+        np.concatenate([exact, value], axis=-1),
+        np.concatenate([8 * EPS * exact, error + TINY], axis=-1),
+        method,
+        source,
+    )
 
 
 def _on_a_circle(
@@ -54,6 +77,7 @@ def _on_a_circle(
     radius: float,
     growth: float,
     known: Callable[[float], Reference],
+    first: np.ndarray | None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the coefficients from a circle, and their errors."""
     half = np.arange(points // 2 + 1)
@@ -64,6 +88,8 @@ def _on_a_circle(
     size = np.max(np.abs(values), axis=-1, keepdims=True)
     with np.errstate(under="ignore"):
         series = np.fft.irfft(np.conj(values), points, axis=-1)[..., : count + 1]
+        if first is not None:
+            error = np.maximum(error, np.abs(series[..., 0] - first)[..., None])
         shrink = radius ** -np.arange(count + 1.0)
         unseen = (radius * growth) ** points
         aliased = unseen / (1 - unseen) * growth ** np.maximum(np.arange(count + 1.0) - 1, 0)

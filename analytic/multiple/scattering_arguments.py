@@ -24,6 +24,22 @@ def checked_cosine(name: str, mu: Any) -> np.ndarray:
     return array
 
 
+GRAZING = 1e-20
+"""Cosine, over the thickness or 1, below which a slab looks as it does along its surface, to the last digit."""
+
+
+DEEPEST = 1e25
+"""Thickness beyond which a slab reflects what a half space does, and passes nothing or, if nothing is absorbed, 1/tau."""
+
+
+def seen_at(mu: np.ndarray, tau: np.ndarray | float, grazing: float = GRAZING) -> np.ndarray:
+    """Return the cosines at which to look at what slabs of thickness tau scatter: never closer to their surface than counts.
+
+    What is scattered changes with mu like mu ln(mu)/tau there, relatively.
+    """
+    return np.maximum(mu, grazing * np.minimum(tau, 1.0))
+
+
 def checked_length(name: str, value: Any) -> np.ndarray:
     """Return finite lengths >= 0 in mean free paths."""
     array = as_float_array(name, value)

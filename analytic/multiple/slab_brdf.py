@@ -16,7 +16,7 @@ import numpy as np
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.analytic.declaration import quantity
 from fogproof.analytic.multiple.isotropic_modes import isotropic_modes
-from fogproof.analytic.multiple.scattering_arguments import checked_albedo, checked_cosine, checked_length
+from fogproof.analytic.multiple.scattering_arguments import checked_albedo, checked_cosine, checked_length, seen_at
 from fogproof.analytic.multiple.slab import checked_phase
 from fogproof.analytic.multiple.slab_by_doubling import is_isotropic
 from fogproof.analytic.multiple.slab_directions import Beams, Side, directional
@@ -124,7 +124,7 @@ def _kernel(albedo: Any, tau: Any, mu0: Any, mu: Any, phase: Any, azimuth: Any, 
 
 
 def _brdf(c: float, tau: float, mu0: np.ndarray, mu: np.ndarray, n: int) -> np.ndarray:
-    both = np.concatenate([mu0, mu])
+    both = seen_at(np.concatenate([mu0, mu]), tau)
     nodes = quadrature(min(tau, 10 * float(np.min(both))), n)
     modes = isotropic_modes(max(c, EPS**2), 1 - c, *nodes)
     difference, total = _difference(modes, c, tau, both), _total(modes, tau, both)

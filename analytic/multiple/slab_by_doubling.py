@@ -11,6 +11,7 @@ import numpy as np
 from fogproof.analytic.arithmetic.double_double import divide, pair
 from fogproof.analytic.arithmetic.error_free import EPS, TINY, exp_minus
 from fogproof.analytic.multiple.doubling import layer
+from fogproof.analytic.multiple.scattering_arguments import DEEPEST, seen_at
 from fogproof.analytic.multiple.scattering_kernel import Scaled, medium, scaled
 from fogproof.analytic.multiple.slab_by_modes import Quantity
 from fogproof.analytic.multiple.slab_modes import quadrature
@@ -92,6 +93,8 @@ def doubled_values(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the quantity and its error for albedos, thicknesses and cosines (v,); for diffuse light if mu0 is None."""
     moments = phase_moments(phase)
+    whole, tau = tau, np.minimum(tau, DEEPEST)
+    beam, mu0 = mu0, None if mu0 is None else seen_at(mu0, tau)
     pairs, which = np.unique(np.stack([c, tau], axis=1), axis=0, return_inverse=True)
     which = which.reshape(len(c))
     value, error = np.zeros(c.shape), np.zeros(c.shape)
@@ -116,12 +119,12 @@ def doubled_values(
             if slow:
                 difference = np.max([SAFETY * (m / n) ** POWER * np.abs(found - f) for m, f in before], axis=0)
             value[todo], error[todo] = found, difference + rounding + 2 * TINY
-            if mu0 is not None:  # both so small that their quotient is lost where tau is raised to THINNEST
-                error[todo] += (tau[todo] < THINNEST) & (mu0[todo] < 1e16 * tau[todo])
+            if beam is not None:  # both so small that their quotient is lost where tau is raised to THINNEST
+                error[todo] += (tau[todo] < THINNEST) & (beam[todo] < 1e16 * tau[todo])
             more = difference > np.maximum(ENOUGH * np.abs(found), rounding)
             todo, before = todo[more], [(m, f[more]) for m, f in [*before, (n, found)]]
-        if quantity == "transmitted" and mu0 is not None:
-            straight, its_error = exp_minus(*divide(pair(tau), pair(mu0)))
+        if quantity == "transmitted" and beam is not None:
+            straight, its_error = exp_minus(*divide(pair(whole), pair(beam)))
             alone = c == 0
             value, error = np.where(alone, straight, value), np.where(alone, its_error, error)
         if quantity == "absorbed":
@@ -130,6 +133,10 @@ def doubled_values(
         if quantity == "reflected":
             nothing = (c == 0) | (tau == 0)
             value, error = np.where(nothing, 0.0, value), np.where(nothing, 0.0, error)
+        if quantity == "transmitted":
+            thicker = np.maximum(whole, TINY)
+            value = np.where(whole > tau, value * (tau / thicker), value)
+            error = np.where(whole > tau, error * (tau / thicker) + TINY, error)
     return value, error
 
 

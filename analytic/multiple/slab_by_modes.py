@@ -10,6 +10,7 @@ import numpy as np
 
 from fogproof.analytic.arithmetic.double_double import divide, pair
 from fogproof.analytic.arithmetic.error_free import EPS, TINY, exp_minus
+from fogproof.analytic.multiple.scattering_arguments import DEEPEST, seen_at
 from fogproof.analytic.multiple.slab_isotropic import (
     THIN,
     Slabs,
@@ -43,11 +44,15 @@ def isotropic_values(
     c: np.ndarray, tau: np.ndarray, mu0: np.ndarray | None, index: float, quantity: Quantity
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the quantity and its error for albedos, thicknesses and cosines (v,); for diffuse light if mu0 is None."""
+    beam, whole = mu0, tau
+    tau = np.minimum(tau, DEEPEST)
+    if mu0 is not None and index == 1:  # behind a boundary no direction grazes inside
+        mu0 = seen_at(mu0, tau)
     pairs, which = np.unique(np.stack([c, tau], axis=1), axis=0, return_inverse=True)
     which = which.reshape(len(c))
     value, error = np.zeros(c.shape), np.zeros(c.shape)
     todo = np.arange(len(c))
-    with np.errstate(under="ignore"):
+    with np.errstate(under="ignore", over="ignore"):
         before = _solution(pairs, which, mu0, index, quantity, todo, LEVELS[0])
         for _, n in pairwise(LEVELS):
             if not len(todo):
@@ -57,16 +62,22 @@ def isotropic_values(
             rounding = (ROUNDING + 4 * EPS * np.abs(np.log(np.clip(found, TINY, 1)))) * found
             difference = np.abs(found - before)
             error[todo] = difference + rounding + 2 * TINY
-            if mu0 is not None:  # both so small that their quotient is lost where tau is raised to THIN
-                error[todo] += (tau[todo] < THIN) & (mu0[todo] < 1e16 * tau[todo])
+            if beam is not None:  # both so small that their quotient is lost where tau is raised to THIN
+                error[todo] += (tau[todo] < THIN) & (beam[todo] < 1e16 * tau[todo])
             more = difference > ENOUGH * found + rounding
             todo, before = todo[more], found[more]
-        if quantity == "transmitted" and mu0 is not None and index == 1:
-            straight, its_error = exp_minus(*divide(pair(tau), pair(mu0)))
+        if quantity == "transmitted" and beam is not None and index == 1:
+            straight, its_error = exp_minus(*divide(pair(whole), pair(beam)))
             value, error = value + straight, error + its_error + EPS * (value + straight)
         if quantity == "absorbed":
             nothing = (c == 1) | (tau == 0)
             value, error = np.where(nothing, 0.0, value), np.where(nothing, 0.0, error)
+        if quantity == "transmitted":
+            thicker = np.maximum(whole, TINY)
+            value, error = (
+                np.where(whole > tau, value * (tau / thicker), value),
+                np.where(whole > tau, error * (tau / thicker) + TINY, error),
+            )
     return value, error
 
 

@@ -15,6 +15,8 @@ import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.analytic.multiple.doubling import SIDE, ScatteringLayer, layer
+from fogproof.analytic.multiple.mode_integrals import FARTHEST
+from fogproof.analytic.multiple.scattering_arguments import seen_at
 from fogproof.analytic.multiple.scattering_kernel import Scaled, associated_legendre, scaled
 from fogproof.analytic.multiple.slab_by_doubling import LEVELS, MOMENTS, phase_moments
 from fogproof.analytic.multiple.slab_modes import quadrature
@@ -28,6 +30,9 @@ MODES = 8
 
 SEEN = 1e-13
 """Share of the sum below which a run of modes is the last."""
+
+GRAZING = 1e-13
+"""Cosine, over the thickness or 1, below which what is scattered twice or more is taken from there."""
 
 ENOUGH = 1e-11
 ROUNDING = 256 * EPS
@@ -64,6 +69,8 @@ def directional(c: float, tau: float, beams: Beams, phase: PhaseFunction, side: 
                     difference + its_error / np.maximum(single, TINY) * once + ROUNDING * (once + np.abs(more)) + change
                 )
                 error += 16 * SEEN * found
+                grazes = np.minimum(beams.mu0, beams.mu) < GRAZING * min(tau, 1.0)
+                error += np.where(grazes, 64 * GRAZING, 0.0) * np.abs(more)
                 if np.all(difference <= ENOUGH * np.abs(found)):
                     break
             before = found
@@ -91,22 +98,23 @@ def _gain(tau: float, mu0: np.ndarray, mu: np.ndarray, side: Side) -> np.ndarray
     """Return int_0^tau exp(-x/mu0 - (x or tau - x)/mu) dx / (mu mu0)."""
     if side == "reflected":
         return -np.expm1(-tau * (1 / mu + 1 / mu0)) / (mu + mu0)
-    a, b = tau / mu, tau / mu0
-    apart = np.abs(a - b)
+    deep = np.minimum(tau / np.maximum(mu, mu0), FARTHEST)
+    over = np.maximum(np.minimum(mu, mu0), TINY)
+    apart = np.minimum(deep / over, FARTHEST) * np.abs(mu - mu0)
     small = apart < 1e-8
-    ratio = np.where(small, 1 - apart / 2, -np.expm1(-apart) / np.where(small, 1.0, apart))
-    return np.exp(-np.minimum(a, b)) * ratio * tau / (mu * mu0)
+    gap = np.where(small, 1.0, np.abs(mu - mu0))
+    return np.exp(-deep) * np.where(small, (1 - apart / 2) * np.minimum(deep / over, FARTHEST), -np.expm1(-apart) / gap)
 
 
 def _many_times(slab: Scaled, beams: Beams, side: Side, n: int, once: np.ndarray) -> np.ndarray:
     """Return the kernel of what is scattered twice or more, over pi (v,); `once` is that of what is scattered once."""
-    cosines, where = np.unique(np.concatenate([beams.mu0, beams.mu]), return_inverse=True)
-    came, goes = np.split(where, 2)
     tau = float(slab.tau[0])
+    cosines, where = np.unique(seen_at(np.concatenate([beams.mu0, beams.mu]), tau, GRAZING), return_inverse=True)
+    came, goes = np.split(where, 2)
     mu, w = quadrature(min(tau, 10 * float(cosines.min())), n, weight=tau)
     count = len(mu)
     total = np.zeros(len(beams.mu))
-    highest = len(slab.chi) - 1
+    highest = int(np.flatnonzero(slab.chi)[-1])  # azimuth modes beyond the last moment are zero
     for first in range(0, highest + 1, MODES):
         orders = np.arange(first, min(first + MODES, highest + 1))
         between = _medium(slab, mu, w, cosines, orders)

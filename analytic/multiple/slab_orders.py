@@ -2,26 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
+from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.analytic.declaration import quantity
 from fogproof.analytic.multiple.legendre_modes import complex_legendre_modes
 from fogproof.analytic.multiple.orders import taylor_coefficients
-from fogproof.analytic.multiple.scattering_arguments import checked_cosine, checked_count, checked_length
+from fogproof.analytic.multiple.scattering_arguments import checked_cosine, checked_count, checked_length, seen_at
 from fogproof.analytic.multiple.slab import slab_reflectance, slab_transmittance
 from fogproof.analytic.multiple.slab_modes import SOURCE, quadrature
-from fogproof.analytic.multiple.slab_solution import Leaving, leaving_slab
+from fogproof.analytic.multiple.slab_solution import leaving_slab
 from fogproof.analytic.phase.functions import phase_legendre_moments
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError
 from fogproof.scene.arrays import Count, FloatArray
 from fogproof.scene.phase import Isotropic, PhaseFunctionField
 
+Side = Literal["reflected", "transmitted"]
+
 FEWEST_NODES, MOST_NODES = 14, 32
 """Half the number of nodes: complex modes cost more than real ones."""
+
+GRAZING = 1e-13
+"""Cosine, over the thickness or 1, below which what is scattered is taken from there."""
 
 NEGLIGIBLE = 1e-7
 """Legendre moment below which the moments are cut off."""
@@ -45,7 +50,7 @@ def slab_reflectance_orders(
 
     At albedo c the n-th order is c^n R_n, and their sum over all n is `slab_reflectance`.
     """
-    return _orders(tau, mu0, count, phase, lambda leaving: leaving.reflected, slab_reflectance)
+    return _orders(tau, mu0, count, phase, "reflected", slab_reflectance)
 
 
 @quantity(
@@ -58,10 +63,10 @@ def slab_transmittance_orders(
     tau: float, mu0: FloatArray, count: Count, phase: PhaseFunctionField | None = None
 ) -> Reference:
     """Return the share of a beam that passes a slab after n scatterings at albedo 1, see `slab_reflectance_orders`."""
-    return _orders(tau, mu0, count, phase, lambda leaving: leaving.transmitted, slab_transmittance)
+    return _orders(tau, mu0, count, phase, "transmitted", slab_transmittance)
 
 
-def _orders(tau: Any, mu0: Any, count: Any, phase: Any, pick: Callable[[Leaving], np.ndarray], real: Any) -> Reference:
+def _orders(tau: Any, mu0: Any, count: Any, phase: Any, side: Side, real: Any) -> Reference:
     b = checked_length("tau", tau)
     if b.ndim:
         raise InvalidValueError("tau", "must be a single number", tau)
@@ -69,19 +74,38 @@ def _orders(tau: Any, mu0: Any, count: Any, phase: Any, pick: Callable[[Leaving]
     moments = phase_legendre_moments(phase or Isotropic(), 2 * MOST_NODES)
     chi = moments.value
     n = int(np.clip(1 + np.flatnonzero(np.abs(chi) > NEGLIGIBLE)[-1] // 2, FEWEST_NODES, MOST_NODES))
-    nodes = quadrature(min(float(b), 10 * float(np.min(mu0, initial=1.0))), n)
+    looked = seen_at(mu0, float(b), GRAZING)
+    nodes = quadrature(min(float(b), 10 * float(np.min(looked, initial=1.0))), n)
+    with np.errstate(over="ignore", under="ignore"):
+        straight, collides = np.exp(-b / mu0), -np.expm1(-b / mu0)
 
     def at(c: complex) -> np.ndarray:
         modes = complex_legendre_modes(c, chi[: 2 * n], *nodes) if b > 0 else None
-        return pick(leaving_slab(modes, float(b), mu0.ravel()))
+        return getattr(leaving_slab(modes, float(b), looked.ravel()), side)
 
     def solution(albedos: np.ndarray) -> np.ndarray:
         return np.stack([at(c) for c in albedos], axis=-1).reshape(*mu0.shape, len(albedos))
 
     orders = taylor_coefficients(
-        solution, checked_count("count", count), known=lambda c: real(c, b, mu0, phase), source=SOURCE
+        solution,
+        checked_count("count", count),
+        known=lambda c: real(c, b, mu0, phase),
+        source=SOURCE,
+        first=np.zeros_like(mu0) if side == "reflected" else straight,
+        most=collides,
     )
-    # Each collision is off by the integral of the error of the phase function, at most the root of the sum (Parseval).
+    # Each collision is off by the integral of the error of the phase function, at most the root of the sum (Parseval);
+    # who does not collide once does not collide again.
     change = np.sqrt((2 * np.arange(2 * n) + 1) @ moments.error[: 2 * n] ** 2)
-    error = orders.error + change * np.arange(orders.error.shape[-1])
+    underflow = TINY if side == "transmitted" else 0.0
+    scattered = np.arange(orders.error.shape[-1])
+    # T_0 where the quotient is rounded; what scatters at grazing incidence where it is not looked at.
+    with np.errstate(over="ignore", under="ignore"):
+        exponent = EPS * np.minimum(b / mu0, 800.0)[..., None] * orders.value
+    grazes = np.where(looked > mu0, 64 * GRAZING, 0.0)[..., None] * np.minimum(orders.value + orders.error, 1.0)
+    error = (
+        orders.error
+        + change * scattered * np.minimum(collides, 1.0)[..., None]
+        + np.where(scattered > 0, grazes, exponent + underflow)
+    )
     return Reference(orders.value, error, orders.method, orders.source)

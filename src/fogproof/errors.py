@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from typing import Any, ClassVar
 
 
@@ -18,6 +19,10 @@ class FogproofError(Exception):
     def to_dict(self) -> dict[str, str]:
         """Return the JSON form: `{"code", "message", "path"}`."""
         return {"code": self.code, "message": str(self), "path": self.path}
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle what the error holds and not how it was made: so it comes back from another process whatever its arguments."""
+        return _restored, (type(self), self.args, {name: _carried(value) for name, value in vars(self).items()})
 
 
 class InvalidValueError(FogproofError, ValueError):
@@ -86,6 +91,22 @@ class SubjectError(FogproofError):
     """What was to be checked raised, or returned something that breaks its contract."""
 
     code = "subject-failed"
+
+
+def _restored(kind: type[FogproofError], args: tuple[Any, ...], held: dict[str, Any]) -> FogproofError:
+    error = kind.__new__(kind, *args)
+    error.args = args
+    vars(error).update(held)
+    return error
+
+
+def _carried(value: Any) -> Any:
+    """Return the value if it can be pickled, else what it looks like: a function made in place stays behind."""
+    try:
+        pickle.loads(pickle.dumps(value))
+    except Exception:
+        return shorten(value)
+    return value
 
 
 def shorten(value: Any, limit: int = 80) -> str:
