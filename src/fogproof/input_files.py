@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 import stat
+from io import BufferedReader
 from pathlib import Path
-from typing import BinaryIO
 
 from fogproof.errors import InvalidInputError
 
@@ -13,7 +13,7 @@ TEXT = 2**26
 """The largest text that is read [bytes]: a scene, a study, a record."""
 
 
-def open_regular(path: str | Path, what: str) -> BinaryIO:
+def open_regular(path: str | Path, what: str) -> BufferedReader:
     """Open a regular file to read, or raise an `InvalidInputError`: a device never ends, and a pipe may never begin.
 
     what  what the file is, for the message: "the grid"
@@ -31,7 +31,7 @@ def open_regular(path: str | Path, what: str) -> BinaryIO:
     return file
 
 
-def size_of(file: BinaryIO) -> int:
+def size_of(file: BufferedReader) -> int:
     """Return the size of an open file [bytes]."""
     return os.fstat(file.fileno()).st_size
 
