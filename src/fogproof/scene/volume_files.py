@@ -31,8 +31,9 @@ from __future__ import annotations
 import math
 import os
 import struct
+from io import BufferedReader
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 import numpy as np
 from numpy.lib import format as npy
@@ -102,7 +103,7 @@ def _read_npy(path: Path) -> tuple[np.ndarray, tuple[None, None]]:
     return values.reshape(shape, order="F" if by_columns else "C").astype(np.float64), (None, None)
 
 
-def _require_short_header(file: BinaryIO, digits: int) -> None:
+def _require_short_header(file: BufferedReader, digits: int) -> None:
     """Refuse a header that would be read whole before anybody asks how long it is; its length is `digits` bytes ahead."""
     length = int.from_bytes(file.read(digits), "little")
     file.seek(-min(digits, file.tell()), os.SEEK_CUR)
@@ -110,7 +111,7 @@ def _require_short_header(file: BinaryIO, digits: int) -> None:
         raise ValueError(f"its header has {length} bytes")
 
 
-def _values(file: BinaryIO, path: Path, kind: np.dtype[Any], shape: tuple[int, ...]) -> np.ndarray:
+def _values(file: BufferedReader, path: Path, kind: np.dtype[Any], shape: tuple[int, ...]) -> np.ndarray:
     """Return the rest of the file as values, (n,), if it is as long as its header says."""
     count = math.prod(shape)  # exact, whatever the header says
     if len(shape) not in (3, 4) or min(shape) < 1:
