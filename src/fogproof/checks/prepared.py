@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from fogproof.checks import sampled_integrals
+from fogproof.checks.call_sizes import Points, small_calls
 from fogproof.checks.claim import Claim, blind, claimed
 from fogproof.checks.density.charts import chart_of
 from fogproof.checks.density.features import Ranges, emptiest
@@ -56,6 +57,7 @@ class Prepared:
     claim     the density integrated by quadrature, None where there is no chart to do it on
     findings  of deterministic checks, but for the normalisation, which the samples may still refine
     counted   whether the probabilities of the cells are known: from quadrature, a table, or a given cdf
+    calls     points of small calls of a sampler that draws its own uniforms, None of any other
     """
 
     subject: Subject
@@ -65,6 +67,8 @@ class Prepared:
     counter: Counter
     findings: tuple[Finding, ...]
     counted: bool
+    calls: Points | None = None
+    seed: int = 0
 
     @property
     def grid(self) -> Grid:
@@ -158,6 +162,12 @@ class Prepared:
 
 def prepare(subject: Subject, samples: int, seed: int) -> Prepared:
     """Integrate the claim, lay out cells for up to `samples` samples, and ask all single questions."""
+    prepared = _prepared(subject, samples, seed)
+    own = subject.dimensions is None and not subject.quasi_random
+    return replace(prepared, calls=small_calls(subject, seed) if own else None, seed=seed)
+
+
+def _prepared(subject: Subject, samples: int, seed: int) -> Prepared:
     pilot = _pilot(subject, seed)
     findings = []
     if subject.dimensions is None:

@@ -25,6 +25,7 @@ class Quantity:
     cause    the likely class of error where it is not
     known    what is declared of one of the numbers, channel by channel; or nothing
     tame     whether an event a hundred times larger than all that was seen is out of the question
+    signed   whether numbers of both signs are usual, so that it tells nothing if none was negative
     """
 
     name: str
@@ -34,6 +35,7 @@ class Quantity:
     cause: str
     known: tuple[Known, ...] = ()
     tame: bool = False
+    signed: bool = False
 
     def known_of(self, channel: int) -> Known:
         """Return what is declared of the numbers of one channel."""
@@ -81,6 +83,13 @@ def quantities_of(
     if declared.variance is not None:
         v, v_error = _exact("variance", declared.variance, len(value))
         known = [declared.known(float(one)) for one in v + v_error]
+        if math.isfinite(high - low):
+            most = np.maximum(high - value + error, 0.0) * np.maximum(value + error - low, 0.0)
+            possible = v - v_error <= most * (1 + 1e-12)
+            rule = (
+                "must be possible within the declared bounds: (high - mean) (mean - low) at most (Bhatia & Davis 2000)"
+            )
+            require("variance", v, possible, rule, f"that is {float(most.min()):.6g}")
         # (X - r)^2 has expectation V + (mean - r)^2, and |mean - r| <= error.
         v_error = v_error + error**2 + (8 * declared.roundoff * v if declared.roundoff > 2.0**-53 else 0.0)
         largest = np.maximum((high - value) ** 2, (value - low) ** 2)

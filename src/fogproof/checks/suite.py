@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from fogproof.checks.call_sizes import one_law
 from fogproof.checks.density.grid import Grid
 from fogproof.checks.escalation import Test
 from fogproof.checks.few_values import few_values, few_values_axes
@@ -45,6 +46,9 @@ def tests_of(prepared: Prepared, tally: Tally) -> list[Test]:
         _add_labels(add, prepared.counter.mixture, tally)
     if not subject.quasi_random:
         add("serial correlation", serial_test, "serial correlation", tally.serial)
+    if prepared.calls is not None:
+        asked = subject, prepared.calls, prepared.pilot.points, prepared.seed
+        add("size of the call", one_law, "size of the call", *asked)
     if prepared.counter.fingerprinted:
         for coordinate in few_values_axes(subject):
             drawn = prepared.pilot.points, tally.points

@@ -52,6 +52,10 @@ def mean_test(
         finding = _student(name, what, data, reference, error, share, known)
     if share < alpha and finding.outcome != "rejected":
         finding = _lawless(finding, what, data, reference, error, alpha - share, known)
+    elif share < alpha and finding.p_value is not None:
+        p = extremes_p(data, reference - error, reference + error, known)
+        if p <= alpha - share:
+            finding = replace(finding, p_value=max(p, finding.p_value), exact=False, lawless=True)
     if finding.outcome == "not rejected" and error > abs(reference) and error > data.stderr:
         message = (
             f"{finding.message}; the reference is known too coarsely, to within {error:.2g}, to tell it from nothing"
@@ -196,7 +200,16 @@ def _lawless(
     effect = data.mean - reference
     if p <= alpha:
         message = f"{finding.message.partition(';')[0]}; decided by {known.words()}, whatever the law"
-        return replace(finding, outcome="rejected", message=message, p_value=p, alpha=alpha, exact=False, effect=effect)
+        return replace(
+            finding,
+            outcome="rejected",
+            message=message,
+            p_value=p,
+            alpha=alpha,
+            exact=False,
+            effect=effect,
+            lawless=True,
+        )
     if finding.outcome == "inconclusive" and known.two_sided and p <= DOUBT:
         message = f"{finding.message.partition(';')[0]}; {known.words()} leave that a probability of {p:.2g}: ask for more samples"
         return replace(finding, message=message)
