@@ -8,7 +8,7 @@ BIN    := $(VENV)/bin
 export OPENBLAS_NUM_THREADS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help verify gallery study test lint format calibrate field-bugs repeat oracle-docs fuzz-oracle oracle-hard kill-study golden bench clean
+.PHONY: help verify gallery study test lint format calibrate field-bugs repeat families oracle-docs fuzz-oracle oracle-hard kill-study golden bench clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -40,6 +40,9 @@ field-bugs: $(VENV)/.installed-test  ## bugs that shipped elsewhere, planted: re
 
 repeat: $(VENV)/.installed-test  ## 20 runs of the catalogue with fresh seeds: no false alarm
 	$(BIN)/python tools/repeat_verify.py
+
+families: $(VENV)/.installed-test  ## errors in a corner of a family's parameters: found and shrunk; right families: none rejected
+	$(BIN)/python tools/families.py
 
 oracle-hard: $(VENV)/.installed-test  ## every function of the oracle on 10^5 hard cases; rewrites docs/oracle-accuracy.md
 	$(BIN)/python tools/oracle_hard.py --table docs/oracle-accuracy.md

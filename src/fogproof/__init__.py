@@ -120,7 +120,7 @@ _LAZY = {
     "read_scene": "fogproof.scene.files",
     "read_voxel_grid": "fogproof.scene.volume_files",
 }
-_SUBPACKAGES = {"adapters", "analytic", "catalogue", "checks", "estimators", "reports", "scene", "study"}
+_SUBPACKAGES = {"adapters", "analytic", "catalogue", "checks", "estimators", "reports", "scene", "strategies", "study"}
 
 
 def __getattr__(name: str) -> Any:
