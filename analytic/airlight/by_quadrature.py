@@ -71,7 +71,7 @@ def single_scattering_by_quadrature(
         error = np.where(scale > 0, scale * error + 4 * EPS * scale * value + TINY, 0.0)
         value = np.where(scale > 0, scale * value, 0.0)
         if beam_of is not None and beam.where is not None:
-            on_light = meets_light(beam.where)
+            on_light = meets_light(beam.where) & (ray.length > 0)
             value[on_light], error[on_light] = _at_the_light(medium, ray, light, beam, shape, occluders, on_light)
     return value, error, METHOD if beam_of else OVER_DIRECTIONS, SOURCE
 

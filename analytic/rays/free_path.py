@@ -53,5 +53,6 @@ def free_path(medium: AnyMediumField, ray: Ray, tau: FloatArray) -> Reference:
     value, error = np.broadcast_to(value, rays.shape), np.broadcast_to(error, rays.shape)
     with np.errstate(invalid="ignore"):
         close = (np.abs(value - rays.length) <= error) & np.isfinite(rays.length)
+        close &= wanted > 0  # no ray is too short for nothing
     value = np.where(value > rays.length, np.inf, value)
     return Reference(value, np.where(close, np.inf, error), "closed form", "elementary")

@@ -67,7 +67,7 @@ def extinction(medium: Procedural, x: np.ndarray, w: np.ndarray) -> np.ndarray:
     shape = (len(x),) if medium.channels is None else (len(x), medium.channels)
     if np.shape(value) != shape:
         raise InvalidValueError("sigma_t", f"must return an array of shape {list(shape)}", list(np.shape(value)))
-    return np.asarray(value, dtype=np.float64).reshape(len(x), -1)
+    return np.asarray(value, dtype=np.float64).reshape(len(x), medium.channels or 1)
 
 
 def bounds(medium: Procedural, origin: np.ndarray, direction: np.ndarray, length: np.ndarray) -> tuple[float, float]:

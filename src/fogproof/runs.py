@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime
 import importlib.metadata
+import inspect
 import shlex
 import sys
 import time
@@ -39,18 +40,31 @@ class Run:
         self._cases: dict[str, dict[str, Any]] = {}
 
     def check(self, name: str, check: Callable[..., Verdict], *arguments: Any, **options: Any) -> Verdict:
-        """Call a check of fogproof's, such as `check_sampler`, with its share of alpha and a seed of its own, and keep the verdict.
+        """Call a check of fogproof's, such as `check_sampler`, and keep the verdict.
 
+        A check that is statistical gets its share of alpha, one that draws random numbers a seed of its own.
         What it raises is raised, after it has been noted: the page shows it as not judged.
         """
         if name in self._cases:
             raise InvalidValueError("name", "must be new in the run", name)
         place = len(self._cases) + 1
-        options.setdefault("alpha", self.alpha / (place * (place + 1)))
-        options.setdefault("seed", int(batch_generator(self.seed, name, 0, 0).integers(2**62)))
+        if "alpha" in options:
+            raise InvalidValueError("alpha", "must be given to Run(alpha=...), whose checks share it", options["alpha"])
+        parameters = inspect.signature(check).parameters.values()
+        anything = any(p.kind is p.VAR_KEYWORD for p in parameters)
+        taken = {p.name for p in parameters}
+        shared = {
+            "alpha": self.alpha / (place * (place + 1)),
+            "seed": int(batch_generator(self.seed, name, 0, 0).integers(2**62)),
+        }
+        options = {key: value for key, value in shared.items() if anything or key in taken} | options
         clock = time.perf_counter()
         try:
             verdict = check(*arguments, **options)
+            if not isinstance(verdict, Verdict):
+                raise InvalidValueError(
+                    "check", "must return a Verdict, as those of fogproof do", type(verdict).__name__
+                )
         except Exception as error:
             reason = f"{type(error).__name__}: {error}"
             self._cases[name] = case_record(name, None, title=check.__name__, status="error", reason=reason)

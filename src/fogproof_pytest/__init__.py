@@ -9,6 +9,7 @@ Nothing but pytest is imported here: fogproof itself is loaded by the first test
 
 from __future__ import annotations
 
+import math
 import secrets
 from collections.abc import Generator, Iterator
 from typing import Any
@@ -19,7 +20,7 @@ ALPHA = 1e-6
 """False-alarm probability of a session, unless told otherwise."""
 
 _SEED, _ALPHA, _WEIGHTS = pytest.StashKey[int](), pytest.StashKey[float](), pytest.StashKey[float]()
-_VERDICTS = pytest.StashKey[list[dict[str, Any]]]()
+_VERDICTS, _TOLD = pytest.StashKey[list[dict[str, Any]]](), pytest.StashKey[int]()
 _MARKER = (
     "fogproof(weight=1, calls=None, inconclusive='fail'): this test's share of the session's false-alarm probability relative to "
     "other tests; how many checks share it equally (None: the k-th gets 1/(k (k + 1)) of it); whether an inconclusive verdict "
@@ -79,13 +80,22 @@ def _asks(item: pytest.Item) -> bool:
 
 
 def _marked(item: pytest.Item) -> dict[str, Any]:
-    marker = item.get_closest_marker("fogproof")
+    """Return what the marks of a test say, those of its class and module included; the nearest counts."""
+    said: dict[str, Any] = {}
+    for marker in item.iter_markers("fogproof"):
+        if marker.args:
+            raise pytest.UsageError(f"{item.nodeid}: give the marker fogproof names, such as weight={marker.args[0]!r}")
+        said = {**marker.kwargs, **said}
     known = {"weight", "calls", "inconclusive"}
-    said = dict(marker.kwargs) if marker else {}
     if unknown := set(said) - known:
         raise pytest.UsageError(f"{item.nodeid}: the marker fogproof knows {sorted(known)}, got {sorted(unknown)}")
-    if not said.get("weight", 1.0) > 0:
-        raise pytest.UsageError(f"{item.nodeid}: weight must be > 0, got {said['weight']}")
+    weight, calls, inconclusive = said.get("weight", 1.0), said.get("calls"), said.get("inconclusive", "fail")
+    if isinstance(weight, bool) or not isinstance(weight, int | float) or not 0 < weight < math.inf:
+        raise pytest.UsageError(f"{item.nodeid}: weight must be a finite number > 0, got {weight!r}")
+    if calls is not None and (isinstance(calls, bool) or not isinstance(calls, int) or calls < 1):
+        raise pytest.UsageError(f"{item.nodeid}: calls must be a whole number >= 1, got {calls!r}")
+    if inconclusive not in ("fail", "pass"):
+        raise pytest.UsageError(f"{item.nodeid}: inconclusive must be 'fail' or 'pass', got {inconclusive!r}")
     return said
 
 
@@ -95,21 +105,29 @@ def fogproof(request: pytest.FixtureRequest) -> Any:
     from fogproof_pytest.checks import Checks
 
     item, config = request.node, request.config
+    if not _asks(item):  # its share was not counted when the shares were made
+        fix = "name the fixture among the test's arguments, or in @pytest.mark.usefixtures('fogproof')"
+        pytest.fail(f"the false-alarm probability was shared out without {item.name}: {fix}", pytrace=False)
     said = _marked(item)
     share = config.stash[_ALPHA] * said.get("weight", 1.0) / config.stash[_WEIGHTS]
     verdicts = item.stash.setdefault(_VERDICTS, [])
     verdicts.clear()  # a test that is run again says the same again
+    item.stash[_TOLD] = 0
     passes = said.get("inconclusive", "fail") == "pass"
     return Checks(item.nodeid, share, config.stash[_SEED], said.get("calls"), passes, verdicts)
 
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) -> Generator[None, Any, Any]:
-    """Attach the verdicts to the report of the call, as plain data that xdist can send, and in a word to junit."""
+    """Attach the new verdicts to the report, as plain data that xdist can send, and in a word to junit.
+
+    Those of a fixture are in the report of the setup or of the teardown.
+    """
     report = yield
-    verdicts = item.stash.get(_VERDICTS, None)
-    if verdicts and call.when == "call":
-        report.fogproof = list(verdicts)
+    first = item.stash.get(_TOLD, 0)
+    if verdicts := item.stash.get(_VERDICTS, [])[first:]:
+        item.stash[_TOLD] = first + len(verdicts)
+        report.fogproof = [(first + k, verdict) for k, verdict in enumerate(verdicts)]
         words = "; ".join(f"{v['check']}: {v['outcome']}, alpha {v['alpha']:.2g}" for v in verdicts)
         item.user_properties.append(("fogproof", words))
     return report
@@ -120,7 +138,7 @@ def pytest_terminal_summary(terminalreporter: Any, exitstatus: int, config: pyte
     told = {}
     for reports in terminalreporter.stats.values():
         for report in reports:
-            for number, verdict in enumerate(getattr(report, "fogproof", ())):
+            for number, verdict in getattr(report, "fogproof", ()):
                 told[report.nodeid, number] = verdict
     folder = config.getoption("--fogproof-report")
     if not told and not folder:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import inspect
+import itertools
 from collections.abc import Callable
 from typing import Any
 
@@ -25,6 +26,7 @@ class Checks:
     ) -> None:
         self._test, self._share, self._seed = test, share, seed
         self._calls, self._passes, self._verdicts = calls, passes, verdicts
+        self._count = itertools.count(1)
 
     def __getattr__(self, name: str) -> Any:
         thing = getattr(fogproof, name)
@@ -35,7 +37,7 @@ class Checks:
 
         def checked(*arguments: Any, **options: Any) -> Verdict:
             __tracebackhide__ = True
-            number = len(self._verdicts) + 1
+            number = next(self._count)
             if "alpha" in options:
                 fix = "give the test a weight instead: @pytest.mark.fogproof(weight=...)"
                 raise InvalidValueError("alpha", "is shared out by the session", options["alpha"], fix)

@@ -38,6 +38,11 @@ DECIDED = [
     ("noise about nothing", lambda rng, n: rng.normal(size=n), Reference(0.0, 1e-16), {}, "not rejected", ""),
     ("constant cost", lambda rng, n: Draws(rng.random(n), np.full(n, 48.0)), 0.5, {"cost": 12.0}, "rejected", ""),
     ("constant cost, too small", lambda rng, n: Draws(rng.random(n), np.full(n, 6.0)), 0.5, {"cost": 12.0}, "rejected", ""),
+    ("two, light tails", lambda rng, n: rng.normal(1, 0.01, n), 2.0, {"samples": 2, "tails": "light"}, "inconclusive", "too few"),
+    ("ten, light tails", lambda rng, n: rng.normal(1, 0.1, n), 1.0, {"samples": 10, "tails": "light"}, "not rejected", "light"),
+    ("variance too small, bounds", lambda rng, n: rng.random(n), 0.5, {"variance": 0.1, "bounds": (0, 1)}, "rejected", ""),
+    ("variance too small, no bounds", lambda rng, n: rng.random(n), 0.5, {"variance": 0.1}, "inconclusive", "bounds="),
+    ("largest variance", lambda rng, n: rng.random(n) < 0.3, 0.3, {"variance": 0.21, "bounds": (0, 1)}, "not rejected", ""),
     ("rounding is no scatter", lambda rng, n: 0.1 + rng.choice([0, 1e-17, 3e-17], n), 0.1, {}, "not rejected", ""),
 ]  # fmt: skip
 
@@ -150,6 +155,7 @@ def test_the_plan_is_kept():
         ({"seed": -1}, "seed"),
         ({"alpha": 1e-320}, "alpha"),
         ({"resolution": 0}, "resolution"),
+        ({"variance": 0.5, "bounds": (0, 1)}, "Bhatia"),
     ],
 )
 def test_wrong_arguments_are_explained(options, words):
@@ -179,3 +185,89 @@ def test_arrays_of_others_are_read_or_refused_with_the_fix():
     refused(lambda rng, n: np.ma.masked_less(rng.random(n), 0.5), "masked")
     refused(lambda rng, n: rng.random((3, n)), "transpose", [0.5, 0.5, 0.5])
     refused(lambda rng, n: rng.random((n, 3)), "one value a channel")
+
+
+def test_orders_are_whole_numbers():
+    with pytest.raises(InvalidValueError, match="labels"):
+        check_estimator(lambda rng, n: Draws(rng.random(n), order=np.ones(n)), {"first": 0.5})
+    with pytest.raises(SubjectError, match="whole"):
+        check_estimator(lambda rng, n: Draws(rng.random(n), order=np.full(n, 1.5)), {1: 0.5})
+
+
+def test_half_precision_is_refused_with_the_fix():
+    for precision in ("float64", "float32"):
+        with pytest.raises(SubjectError, match="half precision"):
+            check_estimator(np.full(100, 0.3, np.float16), 0.3, precision=precision)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"bias": 0.1, "bounds": (1, 0)},
+        {"bias": 2, "bounds": (0, 1)},
+        {"bias": 0.1, "bounds": (0, np.nan)},
+        {"bias": 0.7, "probability": 0.5},
+    ],
+)
+def test_no_plan_for_what_cannot_be(options):
+    with pytest.raises(InvalidValueError):
+        samples_for(**options)
+
+
+def uniform(rng, n):
+    return rng.random(n)
+
+
+def averaged(factor, size=10):
+    """Averages of so many numbers, and their standard errors times a factor."""
+
+    def draw(rng, n):
+        x = rng.random((n, size))
+        return Draws(x.mean(axis=1), stderr=factor * x.std(axis=1, ddof=1) / np.sqrt(size))
+
+    return draw
+
+
+COMPARED = [
+    ("two constants", constant(1.0), constant(0.0), {}, "inconclusive"),
+    ("two constants, the other way", constant(0.0), constant(1.0), {}, "inconclusive"),
+    ("two constants, bounds", constant(1.0), constant(0.0), {"bounds": (0, 1)}, "rejected"),
+    ("two constants, no variance", constant(1.0), constant(0.0), {"variance": (0, 0)}, "rejected"),
+    ("one constant", constant(1.0), constant(1.0), {}, "not rejected"),
+    ("hits", lambda rng, n: rng.random(n) < 0.1, lambda rng, n: rng.random(n) < 0.12, {}, "rejected"),
+    ("right standard errors", averaged(1), averaged(1), {}, "not rejected"),
+    ("right standard errors of one", uniform, averaged(1), {}, "not rejected"),
+    ("standard errors too large", uniform, averaged(1.2), {}, "rejected"),
+    ("standard errors too small", averaged(0.8), uniform, {}, "rejected"),
+    ("sets", np.random.default_rng(1).random(4001), np.full(4001, 0.6), {"bounds": (0, 1)}, "rejected"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "first", "second", "options", "outcome"), COMPARED, ids=[c[0] for c in COMPARED])
+def test_what_is_compared(name, first, second, options, outcome):
+    verdict = compare_estimators(first, second, samples=50_000, **options)
+    assert verdict.outcome == outcome, str(verdict)
+
+
+def test_standard_errors_are_right_where_random_numbers_are_shared():
+    shared = np.random.default_rng(5).random((5000, 10))
+    reported = Draws(shared.mean(axis=1), stderr=shared.std(axis=1, ddof=1) / np.sqrt(10))
+    other = Draws(reported.value + 1e-3 * np.random.default_rng(6).normal(size=5000), stderr=reported.stderr)
+    names = [f.check for f in compare_estimators(reported, other).findings if f.outcome == "rejected"]
+    assert not [name for name in names if "error" in name]
+
+
+@pytest.mark.parametrize(
+    ("second", "options", "words"),
+    [
+        (0.5, {}, "check_estimator"),
+        (Reference(0.5), {}, "check_estimator"),
+        (None, {}, "estimators"),
+        (uniform, {"variance": 0.1}, "pair"),
+    ],
+)
+def test_comparisons_that_are_none_are_explained(second, options, words):
+    with pytest.raises(InvalidValueError, match=words):
+        compare_estimators(uniform, second, **options)
+    with pytest.raises(InvalidValueError, match="pairs"):
+        compare_estimators(np.zeros(10), np.zeros(11))

@@ -103,3 +103,13 @@ def test_alpha_is_spent_once():
 def test_nothing_to_try_is_told():
     with pytest.raises(fogproof.InvalidValueError, match="parameters must not be empty"):
         fogproof.check_family(Tilted, [])
+
+
+def test_families_that_make_nothing_are_explained():
+    def broken(parameter):
+        raise ZeroDivisionError("no such member")
+
+    for make, words in ((broken, "no such member"), (lambda parameter: None, "sample")):
+        verdict = fogproof.check_family(make, iter([1.0, 2.0]), samples=10_000)
+        assert verdict.outcome == "rejected"
+        assert words in str(verdict)

@@ -30,6 +30,11 @@ PROGRAMS = [
     ("biased at every count", lambda rng, n: mean(rng, n) + 0.1, {"reference": 0.5}, "rejected"),
     ("overflow", lambda rng, n: mean(rng, n) if n < 100_000 else np.nan, {"reference": 0.5}, "rejected"),
     ("noise that grows", lambda rng, n: 0.5 + 1e-6 * n * rng.normal(), {"reference": 0.5}, "inconclusive"),
+    ("one number", lambda rng, n: 0.4, {"reference": 0.5}, "inconclusive"),
+    ("one number, near enough", lambda rng, n: 0.4, {"reference": 0.5, "tolerance": 0.3}, "not rejected"),
+    ("marching, no reference", lambda rng, n: 0.5 + 1 / n, {}, "inconclusive"),
+    ("marching, no reference, near enough", lambda rng, n: 0.5 + 1 / n, {"tolerance": 0.01}, "not rejected"),
+    ("marching, no reference, not near", lambda rng, n: 0.5 + 1 / n, {"tolerance": 1e-5}, "rejected"),
     ("ray marching", lambda rng, n: 0.5 + 1 / n, {"reference": 0.5}, "not rejected"),
     ("ray marching in single precision", lambda rng, n: 0.5 + 1 / n + 1e-7 * n, {"reference": 0.5}, "rejected"),
 ]  # fmt: skip
@@ -40,6 +45,12 @@ def test_more_samples_are_never_worse(name, run, options, outcome):
     counts = [1000, 30_000, 1_000_000] if "full" in name or "march" in name else [1000, 10_000, 100_000]
     verdict = check_convergence(run, counts, replicates=16, **options)
     assert verdict.outcome == outcome, str(verdict)
+
+
+def test_a_program_that_disregards_the_count_gets_no_better():
+    verdict = check_convergence(lambda rng, n: rng.random(100).mean(), [100, 1000, 1_000_000], reference=0.5)
+    assert verdict.outcome == "inconclusive"
+    assert "disregarded" in str(verdict)
 
 
 def test_bad_counts_are_explained():

@@ -5,6 +5,8 @@ import pytest
 from scipy.special import ndtri
 
 from fogproof import Discrete, Draw, HalfLine, Interval, UnitSphere, UnitSquare, check_sampler
+from fogproof.checks.call_sizes import CALLS, one_law
+from fogproof.checks.subject import Subject
 
 UNIT = Interval(0, 1)
 
@@ -136,6 +138,11 @@ def levy_pdf(x):
 
 SOUND = {
     "density 0 to every order at its edge": (levy, levy_pdf, HalfLine(0), 1),
+    "a limit that is approached very slowly": (
+        lambda u: np.maximum(-np.log(np.maximum(u[:, 0], 5e-324)), 1e-300) ** -0.1 * (u[:, 0] > 0),
+        lambda x: 10 * np.exp(-np.maximum(x, 1e-20) ** -10) * np.maximum(x, 1e-20) ** -11, HalfLine(0), 1),
+    "the same where 1 - u is 1": (
+        lambda u: levy(1 - (1 - u)), levy_pdf, HalfLine(0), 1),
     "the same at the upper end": (
         lambda u: 1 / (1 + levy(u)), lambda y: levy_pdf(1 / y - 1) / y**2, UNIT, 1),
     "beside a second coordinate": (
@@ -197,3 +204,60 @@ def sphere(u):
 def test_the_sphere_has_edges_too():
     verdict = check_sampler(sphere, lambda x: np.full(len(x), 0.25 / np.pi), UnitSphere(), dimensions=2, samples=20_000)
     assert verdict.outcome == "not rejected", str(verdict)
+
+
+@pytest.mark.parametrize(("g", "precision"), [(0.99, "float64"), (0.999, "float64"), (0.9, "float32")])
+def test_a_textbook_cosine_may_leave_its_range_by_rounding_but_a_length_may_not_be_wrong(g, precision):
+    """1 + g^2 - s^2 loses digits in a narrow lobe: mu = -1 - 2e-15 for g = 0.99, which is the same direction."""
+
+    def scattered(u):
+        kind = u.dtype.type
+        s = (kind(1) - kind(g * g)) / (kind(1) - kind(g) + kind(2 * g) * u[:, 0])
+        mu, phi = (kind(1 + g * g) - s * s) / kind(2 * g), kind(2 * np.pi) * u[:, 1]
+        sine = np.sqrt(np.maximum(kind(1) - mu * mu, kind(0)))
+        return np.stack([sine * np.cos(phi), sine * np.sin(phi), mu], axis=-1)
+
+    def pdf(x):
+        return (1 - g * g) / (4 * np.pi * ((1 - g) ** 2 + g * np.sum((x - [0, 0, 1]) ** 2, axis=-1)) ** 1.5)
+
+    arguments = {"dimensions": 2, "samples": 20_000, "precision": precision}
+    verdict = check_sampler(scattered, pdf, UnitSphere(), **arguments)
+    assert verdict.outcome != "rejected", str(verdict)
+    off = 1e-6 if precision == "float64" else 1e-2
+    verdict = check_sampler(lambda u: scattered(u) * u.dtype.type(1 + off), pdf, UnitSphere(), **arguments)
+    assert "domain" in {f.check for f in verdict.findings if f.outcome == "rejected"}
+
+
+def turned(rng, n):
+    """Directions, all of one meridian where they are asked for one by one."""
+    return sphere(np.stack([rng.random(n), rng.random(n) if n > 1 else np.zeros(n)], axis=-1))
+
+
+OWN = {
+    "one sample is special": (lambda rng, n: rng.random(n) ** (1 if n > 1 else 6), ones, UNIT),
+    "few samples are special": (lambda rng, n: rng.random(n) ** (1 if n > 100 else 3), ones, UNIT),
+    "a thousand are still special": (lambda rng, n: rng.random(n) ** (1 if n > 1000 else 1.3), ones, UNIT),
+    "directions one by one": (turned, lambda x: np.full(len(x), 0.25 / np.pi), UnitSphere()),
+    "integers": (lambda rng, n: rng.integers(0, 6, n) if n > 10 else np.zeros(n), lambda i: np.full(len(i), 1 / 6), Discrete(6)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", OWN)
+def test_a_sampler_with_its_own_uniforms_has_one_law_in_calls_of_any_size(name):
+    sample, pdf, domain = OWN[name]
+    verdict = check_sampler(sample, pdf, domain, dimensions=None, samples=20_000)
+    assert {f.check for f in verdict.findings if f.outcome == "rejected"} == {"size of the call"}, str(verdict)
+    assert verdict.cause == "size of the call"
+    right = check_sampler(lambda rng, n: sample(rng, n + 2000)[:n], pdf, domain, dimensions=None, samples=20_000)
+    assert right.outcome == "not rejected", str(right)
+
+
+def test_the_p_value_of_small_calls_is_an_upper_bound():
+    """Of 400 right samplers, no more have p <= 0.05 than a twentieth and six standard deviations."""
+    subject = Subject(lambda rng, n: rng.random(n), ones, UNIT, None, {})
+    p = []
+    for seed in range(400):
+        pilot = np.random.default_rng().random(4000)
+        calls = {size: np.random.default_rng().random(count * size) for size, count in CALLS.items()}
+        p.append(one_law("size", subject, calls, pilot, seed, 1e-6).p_value)
+    assert np.mean(np.array(p) <= 0.05) <= 0.05 + 6 * np.sqrt(0.05 * 0.95 / 400)

@@ -112,6 +112,55 @@ def test_wrong_options_are_told(tmp_path):
     assert "the marker fogproof knows" in run(tmp_path, marked).stdout + run(tmp_path, marked).stderr
 
 
+@pytest.mark.parametrize(
+    ("mark", "words"),
+    [
+        ("weight='2'", "weight must be a finite number > 0, got '2'"),
+        ("calls=0", "calls must be a whole number >= 1, got 0"),
+        ("inconclusive='maybe'", "inconclusive must be 'fail' or 'pass', got 'maybe'"),
+        ("3", "give the marker fogproof names, such as weight=3"),
+    ],
+)
+def test_a_wrong_mark_is_told(tmp_path, mark, words):
+    out = run(tmp_path, f"import pytest\n@pytest.mark.fogproof({mark})\ndef test_a(fogproof): pass\n")
+    assert words in out.stdout + out.stderr
+    assert "INTERNALERROR" not in out.stdout + out.stderr
+
+
+def test_verdicts_of_fixtures_are_told_whenever_they_fall(tmp_path):
+    text = """
+        import numpy as np
+        import pytest
+
+        def mean(fogproof, off=0.0):
+            fogproof.check_estimator(lambda rng, n: rng.random(n) + off, 0.5, samples=5000)
+
+        @pytest.fixture
+        def before(fogproof):
+            mean(fogproof, 0.4)
+
+        @pytest.fixture
+        def after(fogproof):
+            yield
+            mean(fogproof)
+
+        def test_before(before): pass
+
+        def test_after(fogproof, after): mean(fogproof)
+    """
+    out = run(tmp_path, text, "--fogproof-report", str(tmp_path / "report"))
+    assert "verdicts: 1 rejected, 2 not rejected" in out.stdout or "2 not rejected, 1 rejected" in out.stdout
+    cases = json.loads((tmp_path / "report" / "results.json").read_text())["cases"]
+    assert sorted(case["status"] for case in cases) == ["passed", "passed", "rejected"]
+
+
+def test_a_test_that_was_not_counted_gets_no_share(tmp_path):
+    text = "def test_a(request):\n    request.getfixturevalue('fogproof')\n"
+    out = run(tmp_path, text)
+    assert out.returncode == 1
+    assert "name the fixture among the test's arguments" in out.stdout
+
+
 def test_the_plugin_alone_loads_nothing_heavy():
     code = "import fogproof_pytest, sys; print([m for m in ('numpy', 'fogproof', 'scipy') if m in sys.modules])"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout.strip() == "[]"

@@ -17,7 +17,7 @@ import numpy as np
 
 from fogproof.checks.arguments import alpha_of, bounds_of, samples_of, seed_of
 from fogproof.checks.diagnosis import likely_cause
-from fogproof.checks.draws import Source
+from fogproof.checks.draws import Source, count_of
 from fogproof.checks.escalation import stages
 from fogproof.checks.judgement import Judgement, dependence, judged
 from fogproof.checks.observed import Observed
@@ -28,12 +28,13 @@ from fogproof.checks.streams import batch_sizes
 from fogproof.checks.subject import UNIT_ROUNDOFF, Precision
 from fogproof.checks.verdict import Finding, Outcome, Verdict
 from fogproof.contracts import Draws, Reference
-from fogproof.errors import SubjectError
+from fogproof.errors import InvalidValueError, SubjectError
 from fogproof.validate import number
 
 Draw = Callable[[np.random.Generator, int], Any] | Any
 _NAMES = ("first", "second")
 _DIFFERENCE = 0.9  # share of alpha for the differences; the rest is for each estimator by itself
+_ERRORS = 0.2  # of it for the standard errors of each, if any are reported
 
 
 def compare_estimators(
@@ -52,7 +53,8 @@ def compare_estimators(
 ) -> Verdict:
     """Test that two estimators have the same expectation, channel by channel, inside one false-alarm probability `alpha`.
 
-    first, second  `draw(rng, n)` -> (n,) or (n, channels) independent realisations, or `Draws`
+    first, second  `draw(rng, n)` -> (n,) or (n, channels) independent realisations, or `Draws`; or as many realisations of both
+                   that are already there, such as the pixels of two images. Standard errors that `Draws` hold are tested too
     variance       the exact variances of one realisation of each
     bounds         (low, high): no realisation of either lies outside; `nonnegative` is the same as (0, inf)
     tails          "light": no heavier than those of the exponential law
@@ -66,11 +68,11 @@ def compare_estimators(
     'rejected'
     """
     started = time.perf_counter()
-    alpha, samples, seed = alpha_of(alpha), samples_of(samples), seed_of(seed)
+    alpha, samples, seed = alpha_of(alpha), _count(first, second, samples), seed_of(seed)
     number("tolerance", tolerance, "must be >= 0", 0)
     low, high = bounds_of(bounds, nonnegative)
     roundoff = UNIT_ROUNDOFF[precision]
-    total = None if variance is None else _sum(*(Reference.of("variance", one) for one in variance))
+    total = None if variance is None else _sum(variance)
     declared = Declared(total, None, (low - high, high - low), tails == "light", (0.0, tolerance), roundoff)
     sources = [
         Source(draw, seed, tuple(batch_sizes(samples)), 0, f"compare {name}", precision)
@@ -86,7 +88,8 @@ def compare_estimators(
         before, pairs = pairs.seen.n, pairs.after(both, difference, calls)
         complete = pairs.seen.n == samples
         if pairs.bad or complete or any(before < size <= pairs.seen.n for size in looks):
-            judgement = pairs.judged(_again(sources, index + 1), samples, alpha, complete)
+            alone = [_again_neighbours(source, index + 1) for source in sources]
+            judgement = pairs.judged(_again(sources, index + 1), alone, samples, alpha, complete)
             if complete or judgement.final:
                 break
     assert pairs is not None
@@ -98,7 +101,29 @@ def compare_estimators(
     return Verdict(findings, alpha, pairs.seen.n, seed, seconds, settings, likely_cause(findings), reproduce)
 
 
-def _sum(a: Reference, b: Reference) -> Reference:
+def _count(first: Draw, second: Draw, samples: int) -> int:
+    """Return how many pairs there are at most; two sets of realisations that are there already must be equally large."""
+    for draw in (first, second):
+        if isinstance(draw, Reference) or (
+            not callable(draw) and np.ndim(draw.value if isinstance(draw, Draws) else draw) == 0
+        ):
+            raise InvalidValueError(
+                "first, second",
+                "must be estimators or their realisations",
+                draw,
+                "check_estimator(draw, reference) knows numbers",
+            )
+    there = sorted({count for count in map(count_of, (first, second)) if count is not None})
+    if len(there) > 1:
+        raise InvalidValueError("first, second", "must hold as many realisations, which are compared in pairs", there)
+    return there[0] if there else samples_of(samples)
+
+
+def _sum(variance: Any) -> Reference:
+    """Return the variance of a difference."""
+    if not isinstance(variance, tuple | list) or len(variance) != 2:
+        raise InvalidValueError("variance", "must be a pair, the exact variance of each estimator", variance)
+    a, b = (Reference.of("variance", one) for one in variance)
     return Reference(a.value + b.value, a.error + b.error)
 
 
@@ -114,37 +139,72 @@ def _again(sources: list[Source], upto: int) -> Callable[[], Iterator[tuple[Draw
     return lambda: ((_difference(*both), calls) for both, calls in islice(_drawn_together(sources), upto))
 
 
+def _again_neighbours(source: Source, upto: int) -> Callable[[], Iterator[tuple[Draws, list[int]]]]:
+    return lambda: (
+        (one, [len(one.value)]) for one in (_neighbours(draws) for draws, _ in islice(source.batches(), upto))
+    )
+
+
 def _difference(a: Draws, b: Draws) -> Draws:
-    """Return the differences, with the standard errors of these where both report their own."""
-    stderr = None
-    if a.stderr is not None and b.stderr is not None:
-        stderr = np.hypot(column(a.stderr), column(b.stderr))
     with np.errstate(invalid="ignore"):
-        return Draws(a.value - b.value, stderr=stderr)
+        return Draws(a.value - b.value)
+
+
+def _neighbours(draws: Draws) -> Draws:
+    """Return the differences of two realisations of one estimator after the other, and the standard errors of these.
+
+    Their expectation is zero whatever the mean is, so that reported standard errors can be held to them.
+    """
+    n = len(draws.value) // 2 * 2
+    stderr = column(draws.stderr)[:n]
+    with np.errstate(invalid="ignore", over="ignore"):
+        return Draws(draws.value[:n:2] - draws.value[1:n:2], stderr=np.hypot(stderr[::2], stderr[1::2]))
 
 
 @dataclass(frozen=True)
 class _Pairs:
-    """What was seen of the differences, of each estimator by itself, and how often each was the larger."""
+    """What was seen of the differences, of each estimator by itself, and how often each was the larger.
+
+    errors  of the estimators that report standard errors: differences of realisations that follow each other
+    """
 
     seen: Observed
     sides: tuple[Observed, Observed]
+    errors: tuple[Observed | None, Observed | None]
     signs: np.ndarray
     declared: Declared
 
     @staticmethod
     def of(both: tuple[Draws, Draws], difference: Draws, declared: Declared) -> _Pairs:
         zero = Reference(np.zeros(both[0].value.shape[1]))
-        quantities = quantities_of(zero, declared, difference.stderr)
+        mean, *more = quantities_of(zero, declared, None)
+        quantities = [replace(mean, signed=True), *more]
         alone = [Observed.of(quantities_of(zero, Declared(), None), draws) for draws in both]
         signs = np.zeros((2, both[0].value.shape[1]), dtype=np.int64)
-        return _Pairs(Observed.of(quantities, difference), (alone[0], alone[1]), signs, declared)
+        plain = Declared(light=declared.light, roundoff=declared.roundoff)
+        errors = [
+            None
+            if one.stderr is None
+            else Observed.of(quantities_of(zero, plain, column(one.stderr)), _neighbours(one))
+            for one in both
+        ]
+        return _Pairs(
+            Observed.of(quantities, difference), (alone[0], alone[1]), (errors[0], errors[1]), signs, declared
+        )
 
     def after(self, both: tuple[Draws, Draws], difference: Draws, calls: list[int]) -> _Pairs:
         sides = [side.after(draws, calls) for side, draws in zip(self.sides, both, strict=True)]
+        errors = [
+            None if seen is None else seen.after(_neighbours(draws), [len(draws.value) // 2])
+            for seen, draws in zip(self.errors, both, strict=True)
+        ]
         signs = [np.count_nonzero(difference.value > 0, axis=0), np.count_nonzero(difference.value < 0, axis=0)]
         return replace(
-            self, seen=self.seen.after(difference, calls), sides=(sides[0], sides[1]), signs=self.signs + signs
+            self,
+            seen=self.seen.after(difference, calls),
+            sides=(sides[0], sides[1]),
+            errors=(errors[0], errors[1]),
+            signs=self.signs + signs,
         )
 
     @property
@@ -152,15 +212,17 @@ class _Pairs:
         """Whether either returned something that is not finite."""
         return any(side.bad for side in self.sides)
 
-    def judged(self, again: Any, samples: int, alpha: float, complete: bool) -> Judgement:
+    def judged(self, again: Any, alone: list[Any], samples: int, alpha: float, complete: bool) -> Judgement:
         """Return the findings about the differences, and about each estimator by itself."""
         if self.bad:
             return Judgement(
                 tuple(_not_finite(*one) for one in zip(_NAMES, self.sides, strict=True) if one[1].bad), True
             )
-        whole = judged(self.seen, again, samples, _DIFFERENCE * alpha, complete)
+        reported = any(one is not None for one in self.errors)
+        part = (_DIFFERENCE - 2 * _ERRORS if reported else _DIFFERENCE) * alpha
+        whole = judged(self.seen, again, samples, part, complete)
         channels = len(self.seen.moments[0])
-        share = _DIFFERENCE * alpha / channels
+        share = part / channels
         findings = []
         for finding in whole.findings:
             if finding.check.startswith("mean"):
@@ -170,9 +232,16 @@ class _Pairs:
                 findings.append(replace(finding, message=f"all realisations are finite, {self.seen.n} of each"))
             else:
                 findings.append(finding)
-        for name, side in zip(_NAMES, self.sides, strict=True):
-            for finding in dependence(side, 0.5 * (1 - _DIFFERENCE) * alpha):
-                findings.append(replace(finding, check=f"{finding.check} of the {name}"))
+        for name, side, seen, more in zip(_NAMES, self.sides, self.errors, alone, strict=True):
+            found = dependence(side, 0.5 * (1 - _DIFFERENCE) * alpha)
+            if seen is not None and seen.n > 1:
+                kinds = ("square of the error", "coverage")
+                found += [
+                    f
+                    for f in judged(seen, more, samples // 2, _ERRORS * alpha, complete).findings
+                    if f.check.startswith(kinds)
+                ]
+            findings += [replace(finding, check=f"{finding.check} of the {name}") for finding in found]
         return Judgement(tuple(findings), whole.final and any(f.outcome == "rejected" for f in findings))
 
     def _compared(self, finding: Finding, channel: int, alpha: float) -> Finding:
@@ -211,6 +280,8 @@ def _hits_of_the_same(a: Moments, b: Moments) -> bool:
     """Return whether both have shown the same two values: a law of hits and misses."""
     if a.values is None or b.values is None:
         return False
+    if a.low == a.high and b.low == b.high:
+        return False  # nothing was seen to vary: what was not seen may decide
     counts = {value: a.values.get(value, 0) + b.values.get(value, 0) for value in {**a.values, **b.values}}
     return len(counts) == 2 and min(counts.values()) > 1
 

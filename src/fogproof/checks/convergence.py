@@ -25,6 +25,7 @@ from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError, SubjectError
 
 _ROUNDING = 1e-12  # relative: of sums in another order
+_PROGRESS = 1e-6  # relative: an error that falls by less has stalled
 _SPREAD = 0.1  # share of alpha for the scatter of replicates
 
 
@@ -68,8 +69,8 @@ def check_convergence(
         findings = [Finding("finite values", "rejected", f"estimates are not finite: {', '.join(bad)}", cause="bias")]
     else:
         near = tolerance_of(tolerance)
-        if reference is not None and all(np.ptp(row, axis=0).max() == 0 for row in rows):
-            findings = _never_worse(rows, sizes, reference, near[1])
+        if all(np.ptp(row, axis=0).max() == 0 for row in rows):
+            findings = _not_random(rows, sizes, reference, near)
         else:
             findings = _levels(rows, sizes, reference, near, (1 - _SPREAD) * alpha)
             findings += _scatter(rows, sizes, _SPREAD * alpha)
@@ -120,44 +121,73 @@ def _levels(
         for c in range(channels):
             label = f"{name}, channel {c}" if channels > 1 else name
             data = Moments.of(np.ascontiguousarray(numbers[:, c]))
-            known = Known(0.0, light=True) if data.m2 == 0 else Known(light=True)
+            known = Known(0.0, light=True) if data.m2 == 0 and reference is not None else Known(light=True)
             findings.append(mean_test(label, what, data, float(value[c]), float(error[c]), share, "bias", known))
     return findings
 
 
-def _never_worse(rows: list[np.ndarray], sizes: list[int], reference: Reference | float, slack: float) -> list[Finding]:
-    """Judge a program that is not random, such as ray marching: its error must not grow with the number of steps."""
-    truth = Reference.of("reference", reference)
-    least, findings = np.inf, []
-    for row, n in zip(rows, sizes, strict=True):
-        off = float(np.max(np.abs(row[0] - truth.value)))
-        allowed = least + float(np.max(truth.error)) + slack + _ROUNDING * float(np.max(np.abs(truth.value)))
-        worse = not off <= allowed
-        message = f"off by {off:.3g} with {n} samples" + (f", by {least:.3g} with fewer" if worse else "")
-        outcome: Outcome = "rejected" if worse else "not rejected"
-        findings.append(Finding(f"error with {n} samples", outcome, message, effect=off, cause="bias" if worse else ""))
-        least = min(least, off)
+def _not_random(
+    rows: list[np.ndarray], sizes: list[int], reference: Reference | float | None, tolerance: tuple[float, float]
+) -> list[Finding]:
+    """Judge a program that is not random, such as ray marching: its error must not grow with the number of steps, but fall.
+
+    Without a reference there is no telling by how much two numbers of steps may differ, unless a tolerance says so.
+    """
+    relative, absolute = tolerance
+    values = np.array([row[0] for row in rows])
+    same = f"all {len(rows[0])} estimates from as many samples are equal: the program is not random, or disregards its generator"
+    if reference is None:
+        truth, error, who = values[-1], np.zeros(()), f"the estimate with {sizes[-1]} samples"
+    else:
+        one = Reference.of("reference", reference)
+        truth, error, who = one.value, one.error, "the reference"
+    allowed = error + absolute + (relative + _ROUNDING) * np.abs(truth)
+    off = np.abs(values - truth)
+    within = (off <= allowed).all(axis=-1)
+    if reference is None:
+        outcome: Outcome = "not rejected" if within.all() else "rejected" if absolute + relative > 0 else "inconclusive"
+        message = f"estimates differ by up to {off.max():.3g} from {who}; {same}"
+        message += "; give reference= or tolerance=" if outcome == "inconclusive" else ""
+        cause = "bias" if outcome == "rejected" else ""
+        return [Finding("difference", outcome, message, effect=float(off.max()), cause=cause)]
+    findings, least = [], np.full(off.shape[1:], np.inf)
+    for row, n in zip(off, sizes, strict=True):
+        worse = bool((row > least + allowed).any())
+        outcome = "rejected" if worse else "not rejected"
+        message = f"off by {row.max():.3g} with {n} samples" + (f", by {least.max():.3g} with fewer" if worse else "")
+        findings.append(
+            Finding(f"error with {n} samples", outcome, message, effect=float(row.max()), cause="bias" if worse else "")
+        )
+        least = np.minimum(least, row)
+    stalled = ~(off[-1] <= allowed) & ~(off[-1] < off[0] * (1 - _PROGRESS))
+    if stalled.any():
+        message = f"off by {off[0].max():.3g} with {sizes[0]} samples, and still by {off[-1].max():.3g} with {sizes[-1]}; {same}"
+        message += ". If that is right enough, say so by tolerance="
+        findings.append(Finding("approach to the reference", "inconclusive", message, effect=float(off[-1].max())))
     return findings
 
 
 def _scatter(rows: list[np.ndarray], sizes: list[int], alpha: float) -> list[Finding]:
-    """Compare the scatter of replicates with that at the first count, by Fisher's test: it must not grow.
+    """Compare the scatter of replicates with that at the first count, by Fisher's test: it must fall.
 
-    It may where rare bright values were missed at first, so that this alone rejects nothing.
+    Independent samples make variances fall as 1 / n; what does not fall as 1 / sqrt(n) is reported. It may be so where rare bright
+    values were missed at first, so that this alone rejects nothing.
     """
     from scipy.special import betainc
 
     freedom = 0.5 * (len(rows[0]) - 1)
     share = alpha / ((len(rows) - 1) * rows[0].shape[1])
-    grown = []
+    high = []
     for row, n in zip(rows[1:], sizes[1:], strict=True):
+        slowest = np.sqrt(sizes[0] / n)
         for first, later in zip(rows[0].var(axis=0, ddof=1), row.var(axis=0, ddof=1), strict=True):
-            p = float(betainc(freedom, freedom, first / (first + later))) if later > 0 else 1.0
+            allowed = slowest * first
+            p = float(betainc(freedom, freedom, allowed / (allowed + later))) if later > 0 else 1.0
             if p <= share:
-                grown.append(f"{np.sqrt(later / first) if first > 0 else np.inf:.3g} times as much with {n}")
-    if not grown:
-        return [Finding("scatter of estimates", "not rejected", "estimates from more samples do not scatter more")]
-    message = (
-        f"estimates scatter more than with {sizes[0]} samples: {', '.join(grown)}; rare bright values, or an overflow"
-    )
+                times = np.sqrt(later / first) if first > 0 else np.inf
+                high.append(f"{times:.3g} times as much with {n}, which should be {np.sqrt(sizes[0] / n):.2g}")
+    if not high:
+        return [Finding("scatter of estimates", "not rejected", "estimates from more samples scatter less")]
+    message = f"estimates scatter, against {sizes[0]} samples, {'; '.join(high)}"
+    message += ": rare bright values, an overflow, or a number of samples that is disregarded"
     return [Finding("scatter of estimates", "inconclusive", message)]

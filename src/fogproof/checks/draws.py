@@ -71,7 +71,10 @@ class Source:
     def _clean(self, who: str, result: Any, n: int) -> Draws:
         draws = result if isinstance(result, Draws) else Draws(result)
         x = as_array(f"{who}: value", draws.value)
-        if self.precision == "float64" and x.dtype in (np.float32, np.float16):
+        if x.dtype == np.float16:
+            fix = "convert them to float64, and allow for their rounding by tolerance=0.0005"
+            raise SubjectError(f"{who} returns half precision, which no check takes: {fix}", f"{who}: value")
+        if self.precision == "float64" and x.dtype == np.float32:
             message = f'{who} must return float64 numbers, got {x.dtype}; say precision="float32", which allows for their rounding'
             raise SubjectError(message, f"{who}: value")
         channels = self.channels or (x.shape[1] if x.ndim == 2 else 1)
@@ -86,6 +89,8 @@ class Source:
             column = None if part is None else as_array(f"{who}: {name}", part)
             if column is not None and column.shape[:1] != (n,):
                 raise SubjectError(f"{who} must return a {name} of shape ({n},), got {column.shape}", f"{who}: {name}")
+            if name == "order" and column is not None and not np.all(np.mod(column, 1) == 0):
+                raise SubjectError(f"{who} must return orders that are whole numbers", f"{who}: order")
             rest[name] = column
         return Draws(x.reshape(n, channels).astype(np.float64), **rest)
 

@@ -22,7 +22,7 @@ _ALL_COMBINATIONS = 4  # dimensions up to which all are tried
 _CORNERS = 64  # tried beyond
 _INWARDS = 2.0**-20  # from an edge: what the sampler does there is no edge case
 _APPROACH = {"float64": ((500, 1000), (26, 52)), "float32": ((48, 96), (12, 24))}  # uniforms 2^-k that come near 0
-_CLOSER = 0.75  # times as far from the limit as before: what jumps at the edge stays where it is
+_CLOSER = (0.98, 0.75)  # times as far from the limit as before: what jumps at the edge stays where it is
 _TOWARDS = (2.0**-8, 2.0**-16, 2.0**-24, 2.0**-32)  # of the way to that point, where the support must have begun
 
 
@@ -113,14 +113,18 @@ def _begins(subject: Subject, u: np.ndarray, x: np.ndarray) -> np.ndarray:
 def _approached(subject: Subject, u: np.ndarray, x: np.ndarray) -> np.ndarray:
     """Return (n,) whether x is the limit of samples of positive density, as the uniforms that are 0 go to 0.
 
+    The smallest uniforms tell it best; a sampler that computes 1 - u takes them for 0, and coarser ones must tell it.
+
     Where a density falls to 0 to every order it underflows long before its edge, so no walk along x tells where it begins.
     """
     half = np.full((len(x), 1), 0.5)
-    approached = np.zeros(len(x), dtype=bool)
-    for exponents in _APPROACH[subject.precision]:
+    approached, same = np.zeros(len(x), dtype=bool), np.ones(len(x), dtype=bool)
+    for exponents, closer in zip(_APPROACH[subject.precision], _CLOSER, strict=True):
         far, near = (subject.draw_at(np.maximum(u, 2.0**-k).astype(u.dtype)).x for k in exponents)
         law = subject.domain.law(near)
         end = law.coordinates(x, half)
         gap, before = (np.abs(law.coordinates(y, half) - end).max(axis=1) for y in (near, far))
-        approached |= (subject.density(far) > 0) & (subject.density(near) > 0) & (gap <= _CLOSER * before)
+        positive = (subject.density(far) > 0) & (subject.density(near) > 0)
+        approached |= same & positive & (gap <= closer * before)
+        same &= gap == 0
     return approached

@@ -84,7 +84,7 @@ def check_estimator(
     near = tolerance_of(tolerance)
     within = bounds_of(bounds, nonnegative)
     declared = Declared(variance, cost, within, tails == "light", near, UNIT_ROUNDOFF[precision])
-    labels = frozenset(reference) if isinstance(reference, Mapping) else None
+    labels = _labels_of(reference) if isinstance(reference, Mapping) else None
     if resolution is None:
         sizes = batch_sizes(samples)
         looks = {look.samples: alpha for look in stages(samples, None, alpha, 1.0)}
@@ -118,6 +118,14 @@ def check_estimator(
     reproduce = f"check_estimator({name}, ..., samples={samples}, alpha={alpha:g}, seed={seed})"
     seconds = time.perf_counter() - started
     return Verdict(tuple(findings), alpha, seen.n, seed, seconds, settings, likely_cause(findings), reproduce)
+
+
+def _labels_of(reference: Known) -> frozenset[int]:
+    """Return the orders that have a reference."""
+    for label in reference:
+        if not isinstance(label, int | np.integer):
+            raise InvalidValueError("reference", "must have whole numbers as labels, those of Draws.order", label)
+    return frozenset(reference)
 
 
 def _again(source: Source, upto: int) -> Again:

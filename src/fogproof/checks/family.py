@@ -13,13 +13,14 @@ import hashlib
 import math
 import numbers
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 from fogproof.checks.estimator import check_estimator
 from fogproof.checks.sampler import check_sampler
 from fogproof.checks.streams import fresh_seed
+from fogproof.checks.subject import call
 from fogproof.checks.verdict import Finding, Outcome, Verdict
 from fogproof.errors import FogproofError, InvalidValueError, NotInstalledError
 from fogproof.validate import number
@@ -49,7 +50,7 @@ class _Search:
         words = f"{self.seed}/{parameter!r}/{samples}".encode()
         seed = int.from_bytes(hashlib.blake2b(words, digest_size=7).digest(), "little")
         try:
-            verdict = _check(self.make(parameter), samples, alpha, seed, self.options)
+            verdict = _check(call("make(parameter)", self.make, parameter), samples, alpha, seed, self.options)
         except FogproofError as error:
             verdict = _failed(error, alpha, samples, seed)
         self.tried[repr(parameter)] = (parameter, verdict)
@@ -97,10 +98,11 @@ def check_family(
     members, samples = (int(number(n, v, "must be >= 1", 1)) for n, v in (("members", members), ("samples", samples)))
     started = time.perf_counter()
     search = _Search(make, options, fresh_seed() if seed is None else seed, samples)
-    if isinstance(parameters, Sequence):
-        if not parameters:
+    if isinstance(parameters, Iterable):
+        listed = list(parameters)
+        if not listed:
             raise InvalidValueError("parameters", "must not be empty", parameters)
-        _among(search, list(parameters), samples, alpha)
+        _among(search, listed, samples, alpha)
     else:
         _by_hypothesis(search, parameters, members, samples, alpha)
     return _verdict(search, alpha, time.perf_counter() - started)
@@ -198,6 +200,10 @@ def _check(member: Any, samples: int, alpha: float, seed: int, options: Mapping[
         if not hasattr(member, "reference"):
             raise InvalidValueError("make", "must return estimators that have a `reference`", type(member).__name__)
         return check_estimator(member.draw, member.reference, samples=samples, alpha=alpha, seed=seed, **options)
+    lacking = [name for name in ("sample", "pdf", "domain", "dimensions") if not hasattr(member, name)]
+    if lacking:
+        rule = "must return estimators (draw, reference) or samplers (sample, pdf, domain, dimensions)"
+        raise InvalidValueError("make", f"{rule}; {lacking[0]} is missing", type(member).__name__)
     own = {name: getattr(member, name) for name in ("atoms", "eval") if getattr(member, name, None) is not None}
     return check_sampler(
         member.sample,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
@@ -9,13 +10,14 @@ import numpy as np
 
 from fogproof.checks.escalation import EARLY
 from fogproof.checks.observed import Observed
-from fogproof.checks.quantities import Quantity
+from fogproof.checks.quantities import CheckedQuantity
 from fogproof.checks.statistics.bets import Bets
 from fogproof.checks.statistics.coverage import coverage_test
 from fogproof.checks.statistics.dependence import repeated_stretches, repeats_within_calls, runs_test, spread_of_calls
 from fogproof.checks.statistics.goodness import MISS
-from fogproof.checks.statistics.heavy import Tail
+from fogproof.checks.statistics.heavy import TailEstimate
 from fogproof.checks.statistics.known import Known
+from fogproof.checks.statistics.light import light_tailed_p
 from fogproof.checks.statistics.means import DOUBT, LAWLESS, mean_test, trusted, unseen_size
 from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.verdict import Finding, Outcome, Resolution
@@ -86,7 +88,7 @@ def judged(seen: Observed, again: Again, samples: int, alpha: float, complete: b
 class _Claim:
     """One quantity in one channel, what was seen of it, and its share of alpha."""
 
-    quantity: Quantity
+    quantity: CheckedQuantity
     channel: int
     name: str
     data: Moments
@@ -105,7 +107,7 @@ class _Claim:
     def known(self) -> Known:
         """What is declared; and where nothing is, that there are no negative values if only absurd ones could matter."""
         known = self.quantity.known_of(self.channel)
-        undeclared = known == Known(light=known.light)
+        undeclared = known == Known(light=known.light) and not self.quantity.signed
         if self.quantity.name.startswith("mean") and undeclared and self.data.low >= 0 and self._absurd(above=True):
             return replace(known, low=0.0, assumed=True)
         return known
@@ -150,21 +152,33 @@ class _Claim:
             return replace(finding, outcome="rejected", message=message, cause=cause, region=(side,))
         if self.quantity.name == "variance" and "too small" in finding.region and not self._may_fall_short(finding):
             message = f"{finding.message.partition(';')[0]}; rare values that were not seen may hold the rest"
-            message += ': ask for more samples, or declare bounds=(low, high) or tails="light"'
+            message += ": ask for more samples"
+            message += "" if self.known.bounded else ', or declare bounds=(low, high) or tails="light"'
             return replace(finding, outcome="inconclusive", message=message, p_value=None, cause="", region=())
+        if self._too_few(finding):
+            message = f"{finding.message}; {self.data.n} are too few: the opposite of the reference would pass"
+            return replace(finding, outcome="inconclusive", message=message, p_value=None)
         doubtful = not trusted(self.data, alpha, known) or self.data.largest_share > _SUSPICIOUS
         if doubtful and self.data.n > 1 and finding.outcome != "rejected" and "coarsely" not in finding.message:
             return self._second_look(finding, again, complete)
         return finding
 
+    def _too_few(self, finding: Finding) -> bool:
+        """Return whether a few values pass that tell nothing: scattered like this, the reference's opposite would pass too."""
+        few = finding.outcome == "not rejected" and finding.p_value is not None and self.known.light
+        if not few or self.quantity.name != "mean" or self.value == 0:
+            return False
+        gap = 2 * max(abs(self.value), self.data.deviation) - self.error
+        return light_tailed_p(self.data.n, gap / max(self.data.stderr, math.ulp(0.0))) > self.share
+
     def _may_fall_short(self, finding: Finding) -> bool:
         """Return whether a variance that is too small is an error: it is none if rare values can hold what is missing."""
-        return "whatever the law" in finding.message or self.known.light
+        return finding.lawless or self.known.light
 
     def _second_look(self, finding: Finding, again: Again, complete: bool) -> Finding:
         alpha, known = _SECOND * self.share, self.known
         bets = Bets(self.value - self.error, self.value + self.error, known, self.samples, alpha)
-        tail = Tail(self.value)
+        tail = TailEstimate(self.value)
         for draws, _ in again():
             x = np.ascontiguousarray(self.quantity.numbers(draws)[:, self.channel])
             bets, tail = bets.after(x) if bets.possible else bets, tail.after(x)
@@ -184,6 +198,7 @@ class _Claim:
                 exact=False,
                 cause=cause,
                 region=(side,),
+                lawless=True,
             )
         if tail.suspect() and not known.two_sided:
             index, spread = tail.index()
@@ -207,11 +222,10 @@ class _Claim:
         """
         if finding.outcome != "rejected" or finding.p_value is None or finding.p_value > EARLY * self.share:
             return False
-        lawless = "whatever the law" in finding.message or "betting" in finding.message
-        return lawless or self._absurd()
+        return finding.lawless or self._absurd()
 
 
-def without_variance(quantities: list[Quantity]) -> set[int]:
+def without_variance(quantities: list[CheckedQuantity]) -> set[int]:
     """Return the channels that declare no variance."""
     variance = next((q.value for q in quantities if q.name == "variance"), np.empty(0))
     return {channel for channel, v in enumerate(variance) if v == 0}

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+from fogproof.checks.arguments import bounds_of
 from fogproof.checks.judgement import share_of_means
 from fogproof.checks.statistics.bets import Bets
 from fogproof.checks.statistics.extremes import detectable
@@ -64,9 +65,12 @@ def samples_for(
     usual, lawless, bets = share_of_means(false_fail, claims, declared)
     if probability is not None:
         p = number("probability", probability, "must lie in [0, 1]", 0, 1)
+        number("bias", bias, "must leave a probability, one way at least", 0, max(p, 1 - p))
         return _smallest(lambda n: binomial_reach(n, p, p, usual, false_pass), bias)
     if bounds is not None:
-        known = Known(low=float(bounds[0]), high=float(bounds[1]))
+        low, high = bounds_of(bounds)
+        number("bias", bias, "must be possible within the bounds", 0, high - low)
+        known = Known(low=low, high=high)
         return _smallest(lambda n: detectable(n, known, lawless, false_pass), bias)
     v = number("variance", variance, "must be > 0", 0, open_ends=True)
     if whatever_the_law:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from fogproof.checks import sampled_integrals
+from fogproof.checks.call_sizes import Points, small_calls
 from fogproof.checks.claim import Claim, blind, claimed
 from fogproof.checks.density.charts import chart_of
 from fogproof.checks.density.features import Ranges, emptiest
@@ -18,7 +19,7 @@ from fogproof.checks.density.model import looked_at, looked_at_plane
 from fogproof.checks.edges import edge_uniforms, no_edge_uniforms
 from fogproof.checks.given_cdf import agreement, continuous_cdf, rosenblatt
 from fogproof.checks.jacobian import jacobian_agreement
-from fogproof.checks.mixture import Mixture
+from fogproof.checks.mixture import MixtureTest
 from fogproof.checks.normalisation import FLOOR, albedo, mean_cosine, normalisation
 from fogproof.checks.probes import precision_agreement, reference_agreement
 from fogproof.checks.promises import inside, usual_labels
@@ -56,6 +57,7 @@ class Prepared:
     claim     the density integrated by quadrature, None where there is no chart to do it on
     findings  of deterministic checks, but for the normalisation, which the samples may still refine
     counted   whether the probabilities of the cells are known: from quadrature, a table, or a given cdf
+    calls     points of small calls of a sampler that draws its own uniforms, None of any other
     """
 
     subject: Subject
@@ -65,6 +67,8 @@ class Prepared:
     counter: Counter
     findings: tuple[Finding, ...]
     counted: bool
+    calls: Points | None = None
+    seed: int = 0
 
     @property
     def grid(self) -> Grid:
@@ -158,6 +162,12 @@ class Prepared:
 
 def prepare(subject: Subject, samples: int, seed: int) -> Prepared:
     """Integrate the claim, lay out cells for up to `samples` samples, and ask all single questions."""
+    prepared = _prepared(subject, samples, seed)
+    own = subject.dimensions is None and not subject.quasi_random
+    return replace(prepared, calls=small_calls(subject, seed) if own else None, seed=seed)
+
+
+def _prepared(subject: Subject, samples: int, seed: int) -> Prepared:
     pilot = _pilot(subject, seed)
     findings = []
     if subject.dimensions is None:
@@ -192,7 +202,7 @@ def prepare(subject: Subject, samples: int, seed: int) -> Prepared:
             findings.append(jacobian_agreement(subject, pilot.points))
     if len(claim.chart.axes) > 1 and (subject.cdf is not None or not _independent(grid)):
         law = subject.domain.law(pilot.points)
-        mixture = Mixture.of(subject, law, pilot.points, seed, 1)
+        mixture = MixtureTest.of(subject, law, pilot.points, seed, 1)
     counter = _counter(subject, grid, count, ranges, pilot, mixture)
     return Prepared(subject, samples, pilot, claim, counter, tuple(findings), True)
 
@@ -219,7 +229,7 @@ def _by_labels(
     if wanted > PILOT:
         points = np.concatenate([points, _pilot(subject, seed, 1, wanted - PILOT).points])
     law = subject.domain.law(points)
-    mixture = Mixture.of(subject, law, points, seed, samples).wider(points)
+    mixture = MixtureTest.of(subject, law, points, seed, samples).wider(points)
     halves = np.full((1, len(law.axes)), 0.5)
     if subject.axis is not None and subject.mean_cosine is not None:
         findings.append(sampled_integrals.mean_cosine(mixture))
@@ -249,7 +259,7 @@ def _counter(
     count: Callable[[np.ndarray], tuple[np.ndarray, ...]],
     ranges: Ranges | None,
     pilot: Pilot,
-    mixture: Mixture | None,
+    mixture: MixtureTest | None,
 ) -> Counter:
     table = isinstance(subject.domain, Discrete)
     scores = tuple(in_units(m.scores) for m in (grid.marginals[:1] if table else grid.marginals))

@@ -46,7 +46,7 @@ class Resolution:
 
 
 @dataclass(frozen=True)
-class Interval:
+class EffectInterval:
     """Where the true effect lies, but for a probability 1 - confidence."""
 
     low: float
@@ -74,6 +74,7 @@ class Finding:
     interval    where the true effect lies
     region      where the misfit is, and in which direction, in words
     cause       the likely class of error where it is rejected: "normalisation", "wrong measure", "atom", ...
+    lawless     True if the p-value holds whatever the law of the values
     """
 
     check: str
@@ -86,9 +87,10 @@ class Finding:
     effect: float | None = None
     resolution: Resolution | None = None
     figure: dict[str, Any] | None = None
-    interval: Interval | None = None
+    interval: EffectInterval | None = None
     region: tuple[str, ...] = ()
     cause: str = ""
+    lawless: bool = False
 
     def located(self, region: str) -> Finding:
         """Return the finding with one more word on where the misfit is."""

@@ -17,7 +17,7 @@ class Ray:
 
     origin     (..., 3) [m]
     direction  (..., 3) unit vectors, away from the camera
-    length     (...) [m], > 0; inf where the ray meets no surface
+    length     (...) [m], >= 0: 0 where the surface is at the camera, inf where the ray meets none
     """
 
     origin: PointArray
@@ -27,7 +27,7 @@ class Ray:
     def __post_init__(self) -> None:
         origin, direction = points("origin", self.origin), unit_vectors("direction", self.direction)
         length = as_float_array("length", self.length)
-        require("length", length, length > 0, "must be > 0 [m]", "inf is allowed for a ray that meets no surface")
+        require("length", length, length >= 0, "must be >= 0 [m]", "inf is allowed for a ray that meets no surface")
         try:
             shape = np.broadcast_shapes(origin.shape[:-1], direction.shape[:-1], length.shape)
         except ValueError:

@@ -89,7 +89,7 @@ def cells_of(study: Study) -> list[Cell]:
     for number, scene in enumerate(study.scenes):
         for place, method in enumerate(scene.estimators):
             where = f"scenes.{number}.estimators.{place}"
-            if method.quantity != scene.quantity:
+            if method.quantity not in (scene.quantity, None):
                 what = f"{name_of(method)} estimates the {method.quantity}"
                 raise InvalidInputError(f"{where}: {what}, scene {scene.name!r} is about the {scene.quantity}", where)
             kinds: list[Points] = ["random"]

@@ -16,9 +16,11 @@ from typing import Any
 import numpy as np
 
 from fogproof.errors import InvalidInputError, InvalidValueError, shorten
+from fogproof.input_files import read_text
 from fogproof.scene.files import read_fields
 from fogproof.study.media import sha256_of
-from fogproof.study.methods.table import MethodField
+from fogproof.study.methods.table import OWN, MethodField
+from fogproof.study.own_code import NAME, digest_of
 from fogproof.study.question import Question
 from fogproof.validate import number
 
@@ -91,11 +93,7 @@ class Study:
 def read_study(path: str | Path) -> Study:
     """Read a study file; every fault is a `FogproofError` that names the file and the key."""
     path = Path(path)
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
-        raise InvalidInputError(f"cannot read the study file {path}: {reason}", str(path)) from None
+    text = read_text(path, "the study file")
     try:
         table = tomllib.loads(text)
     except (tomllib.TOMLDecodeError, RecursionError) as error:
@@ -152,15 +150,26 @@ def _scene_tables(table: Any) -> list[dict[str, Any]]:
 
 
 def _normalised(table: dict[str, Any], folder: str) -> dict[str, Any]:
-    """Return the table with estimators that are mere names spelt out, and files of voxels signed."""
+    """Return the table with estimators that are mere names spelt out, and files of voxels and others' estimators signed."""
     for scene in _scene_tables(table):
         names = scene.get("estimators")
         if isinstance(names, list):
-            scene["estimators"] = [{"kind": name} if isinstance(name, str) else name for name in names]
+            tables = [{"kind": name} if isinstance(name, str) else name for name in names]
+            scene["estimators"] = [_signed(each, folder) for each in tables]
         medium = scene.get("medium")
         if isinstance(medium, dict) and medium.get("kind") == "grid-file" and isinstance(medium.get("path"), str):
             medium["sha256"] = sha256_of(Path(folder) / medium["path"])
     return table
+
+
+def _signed(estimator: Any, folder: str) -> Any:
+    """Return the table of an estimator; of one's own, "module:Estimator", with the digest of its sources."""
+    kind = estimator.get("kind") if isinstance(estimator, dict) else None
+    named = NAME.fullmatch(kind) if isinstance(kind, str) and kind != OWN else None
+    if named is None:
+        return estimator
+    options = {key: value for key, value in estimator.items() if key != "kind"}
+    return {"kind": OWN, "source": kind, "options": options, "sha256": digest_of(named[1], folder)}
 
 
 def _with_paths(table: dict[str, Any], folder: str) -> dict[str, Any]:
@@ -169,4 +178,8 @@ def _with_paths(table: dict[str, Any], folder: str) -> dict[str, Any]:
         medium = scene.get("medium")
         if isinstance(medium, dict) and medium.get("kind") == "grid-file" and isinstance(medium.get("path"), str):
             medium["path"] = str(Path(folder) / medium["path"])
+        estimators = scene.get("estimators")
+        for estimator in estimators if isinstance(estimators, list) else ():
+            if isinstance(estimator, dict) and estimator.get("kind") == OWN:
+                estimator["folder"] = folder
     return table

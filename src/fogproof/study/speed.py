@@ -91,6 +91,10 @@ def targets_of(
     return found
 
 
+_BEYOND = math.log(1e18)
+"""What grows by more than this is beyond any number of samples, and soon beyond any number."""
+
+
 def _on_the_curve(
     error: float, target: float, counts: list[int], seconds: list[float], size: Sequence[float], marched: bool
 ) -> Target:
@@ -112,5 +116,7 @@ def _on_the_curve(
     else:
         k, how = len(size) - 1, "extrapolated"
     share = math.log(size[k - 1] / target) / math.log(size[k - 1] / max(size[k], 1e-300))
+    if share * math.log(counts[k] / counts[k - 1]) > _BEYOND:
+        return Target(error, None, None, "the error hardly falls")
     samples = counts[k - 1] * (counts[k] / counts[k - 1]) ** share
     return Target(error, samples, seconds[k - 1] * (seconds[k] / seconds[k - 1]) ** share, how)

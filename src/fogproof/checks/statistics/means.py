@@ -18,7 +18,7 @@ from fogproof.checks.statistics.light import light_tailed_p, light_tailed_reach
 from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.statistics.power import binomial_reach, student_reach
 from fogproof.checks.statistics.tails import normal_quantile, student_two_sided
-from fogproof.checks.verdict import Finding, Interval, Outcome, Resolution
+from fogproof.checks.verdict import EffectInterval, Finding, Outcome, Resolution
 
 LARGEST_CORRECTION = 1.0  # of the exponent |skewness| z^3 / (3 sqrt n); beyond it the expansion is not trusted
 LARGEST_SHARE = 0.05  # of one sample in the sum of squares; beyond it the variance itself may be infinite
@@ -52,6 +52,10 @@ def mean_test(
         finding = _student(name, what, data, reference, error, share, known)
     if share < alpha and finding.outcome != "rejected":
         finding = _lawless(finding, what, data, reference, error, alpha - share, known)
+    elif share < alpha and finding.p_value is not None:
+        p = extremes_p(data, reference - error, reference + error, known)
+        if p <= alpha - share:
+            finding = replace(finding, p_value=max(p, finding.p_value), exact=False, lawless=True)
     if finding.outcome == "not rejected" and error > abs(reference) and error > data.stderr:
         message = (
             f"{finding.message}; the reference is known too coarsely, to within {error:.2g}, to tell it from nothing"
@@ -59,7 +63,7 @@ def mean_test(
         finding = replace(finding, outcome="inconclusive", message=message, p_value=None, resolution=None)
     reach = normal_quantile(0.5 * MISS) * data.stderr
     effect = data.mean - reference
-    interval = Interval(effect - reach, effect + reach, 1 - MISS) if math.isfinite(reach) else None
+    interval = EffectInterval(effect - reach, effect + reach, 1 - MISS) if math.isfinite(reach) else None
     rejected = finding.outcome == "rejected"
     if rejected and finding.p_value is not None and known.variance is None and not known.bounded:
         finding = replace(finding, message=finding.message + unseen(data, effect, error, alpha))
@@ -196,7 +200,16 @@ def _lawless(
     effect = data.mean - reference
     if p <= alpha:
         message = f"{finding.message.partition(';')[0]}; decided by {known.words()}, whatever the law"
-        return replace(finding, outcome="rejected", message=message, p_value=p, alpha=alpha, exact=False, effect=effect)
+        return replace(
+            finding,
+            outcome="rejected",
+            message=message,
+            p_value=p,
+            alpha=alpha,
+            exact=False,
+            effect=effect,
+            lawless=True,
+        )
     if finding.outcome == "inconclusive" and known.two_sided and p <= DOUBT:
         message = f"{finding.message.partition(';')[0]}; {known.words()} leave that a probability of {p:.2g}: ask for more samples"
         return replace(finding, message=message)

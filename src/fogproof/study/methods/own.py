@@ -1,0 +1,116 @@
+"""One's own estimator in a study: `kind = "my_module:Estimator"`, every further key an option of it.
+
+The module lies beside the study file or is installed. The class, or a function that returns an estimator, is called as
+`Estimator(scene, **options)`; the scene is a `Question`, with `built_medium`, `ray`, `light`, `ambient`, …. What it makes has
+
+    draw       (rng, n) -> (n,) independent realisations of the scene's quantity, or `Draws` with their cost; all chance comes
+               from rng, the workers' threads may call it at the same time
+    variance   the exact variance of a realisation, a number or a `Reference`; may be missing
+
+and the class itself may have
+
+    title       how it is called in words; "my_module:Estimator" without one
+    dimensions  uniforms a realisation, if `draw` is a pure function of rng.random((n, dimensions)): Sobol points are tried then
+    bias        why its mean is not the quantity, in words, if it is biased by construction
+
+The sources of the module, and of what it imports from the same place, belong to what identifies the study's batches.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+import numpy as np
+
+from fogproof.contracts import Draws, Reference
+from fogproof.errors import FogproofError, InvalidInputError, SubjectError
+from fogproof.study.methods.method import Method
+from fogproof.study.own_code import digest_of, loaded
+from fogproof.study.question import Question
+
+
+@dataclass(frozen=True)
+class Own(Method):
+    """An estimator of somebody else's.
+
+    source   "module:Estimator"
+    options  what it is called with besides the scene
+    sha256   of its sources, filled in when the study is read: other sources make other batches
+    folder   where the study file lies; filled in as well, and no part of what identifies the study
+    """
+
+    source: str
+    sha256: str
+    options: dict[str, Any] = field(default_factory=dict)
+    folder: str = ""
+    quantity: ClassVar[Any] = None
+
+    def make(self, scene: Question, count: int) -> Any:
+        """Return the estimator, which answers for what it draws."""
+        return _Answering(self.source, self._made(scene))
+
+    def variance(self, scene: Question) -> Reference | None:
+        """Return what it says its variance is, if anything."""
+        said = getattr(self._made(scene), "variance", None)
+        return None if said is None else Reference.of("variance", said)
+
+    @property
+    def title(self) -> str:
+        """Its own, or its name."""
+        return str(getattr(self._maker(), "title", self.source))
+
+    @property
+    def dimensions(self) -> int | None:
+        """Uniforms a realisation, None if it does not say."""
+        said = getattr(self._maker(), "dimensions", None)
+        if said is not None and not (isinstance(said, int) and said > 0):
+            what = f"{self.source}: dimensions must be a whole number > 0, or None, got {said!r}"
+            raise InvalidInputError(what, "dimensions")
+        return said
+
+    @property
+    def bias(self) -> str:
+        """Why it is biased, "" if it should not be."""
+        return str(getattr(self._maker(), "bias", ""))
+
+    def _maker(self) -> Any:
+        module, _, name = self.source.partition(":")
+        if digest_of(module, self.folder) != self.sha256:
+            raise InvalidInputError(f"the sources of {self.source} have changed since the study was started", module)
+        maker = getattr(loaded(module, self.folder), name, None)
+        if not callable(maker):
+            what = "is no class" if maker is not None else "is not there"
+            raise InvalidInputError(f"{self.source}: {name} {what} in the module {module}", self.source)
+        return maker
+
+    def _made(self, scene: Question) -> Any:
+        try:
+            made = self._maker()(scene, **self.options)
+        except FogproofError:
+            raise
+        except Exception as error:
+            raise SubjectError(f"{self.source}: {type(error).__name__}: {error}", self.source) from None
+        if not callable(getattr(made, "draw", None)):
+            raise SubjectError(f"{self.source} made {type(made).__name__}, which has no draw(rng, n)", "draw")
+        return made
+
+
+@dataclass(frozen=True, eq=False)
+class _Answering:
+    """Holds an estimator to its contract; whatever it raises is told with its name."""
+
+    source: str
+    made: Any
+
+    def draw(self, rng: np.random.Generator, n: int) -> Any:
+        try:
+            drawn = self.made.draw(rng, n)
+            shape = np.asarray(drawn.value if isinstance(drawn, Draws) else drawn, dtype=np.float64).shape
+        except FogproofError:
+            raise
+        except Exception as error:
+            raise SubjectError(f"{self.source}: draw: {type(error).__name__}: {error}", "draw") from None
+        if shape not in ((n,), (n, 1)):
+            raise SubjectError(f"{self.source}: draw(rng, {n}) must return {n} numbers, got shape {shape}", "draw")
+        return drawn

@@ -1,0 +1,100 @@
+"""One's own estimator in a study: judged like any other, never mixed with what an older state of its source drew."""
+
+import textwrap
+
+import pytest
+from study_fixtures import RAY, toml
+
+from fogproof.errors import FogproofError
+from fogproof.study import read_study, run_study
+from fogproof.study.cells import cells_of, prepare
+
+MINE = """
+    import numpy as np
+    from helper import FACTOR
+
+    class Analog:
+        dimensions = 1
+
+        def __init__(self, scene, scale=1.0):
+            self.tau = (scene.built_medium.sigma_a + scene.built_medium.sigma_s) * float(scene.ray.length)
+            self.scale = scale
+            p = np.exp(-self.tau)
+            self.variance = (scale * FACTOR) ** 2 * p * (1 - p)
+
+        def draw(self, rng, n):
+            u = rng.random((n, 1))[:, 0]
+            return self.scale * FACTOR * (-np.log1p(-u) > self.tau)
+"""
+SCENE = {"name": "fog", "quantity": "transmittance", "medium": {"sigma_a": 0.2, "sigma_s": 0.3}, "ray": RAY}
+
+
+def study_file(folder, estimators, text=MINE, factor="1.0", **more):
+    folder.mkdir(exist_ok=True)
+    (folder / "my_module.py").write_text(textwrap.dedent(text))
+    (folder / "helper.py").write_text(f"FACTOR = {factor}\n")
+    scenes = [{**SCENE, "estimators": estimators}]
+    table = {"samples": [64, 512], "replicates": 8, "batch": 512, "scenes": scenes, **more}
+    (folder / "study.toml").write_text(toml(table))
+    return folder / "study.toml"
+
+
+@pytest.mark.parametrize("executor", ["threads", "processes"])
+def test_it_is_judged_like_any_other(tmp_path, executor):
+    own = [{"kind": "my_module:Analog"}, {"kind": "my_module:Analog", "scale": 2.0}]
+    path = study_file(tmp_path / "s", [*own, {"kind": "analog"}], samples=[512, 4096])
+    record = run_study(read_study(path), tmp_path / "run", executor=executor, workers=2)
+    assert not record["failures"]
+    statuses = {e["name"]: e["status"] for e in record["scenes"][0]["estimators"]}
+    assert statuses == {
+        "my_module:Analog": "passed",
+        "my_module:Analog + sobol": "passed",
+        "my_module:Analog (scale = 2.0)": "rejected",
+        "my_module:Analog (scale = 2.0) + sobol": "rejected",
+        "analog": "passed",
+        "analog + sobol": "passed",
+    }
+    assert record["scenes"][0]["estimators"][0]["kind"] == "my_module:Analog"
+
+
+def test_a_changed_source_is_another_study(tmp_path):
+    path = study_file(tmp_path / "s", [{"kind": "my_module:Analog"}])
+    before = read_study(path)
+    prepare(cells_of(before))
+    (tmp_path / "elsewhere").mkdir()
+    study_file(tmp_path / "elsewhere", [{"kind": "my_module:Analog"}])
+    assert read_study(tmp_path / "elsewhere" / "study.toml").fingerprint == before.fingerprint
+    study_file(tmp_path / "s", [{"kind": "my_module:Analog"}], factor="3.0")  # what it imports counts as well
+    after = read_study(path)
+    assert after.fingerprint != before.fingerprint
+    with pytest.raises(FogproofError, match="the sources of my_module:Analog have changed"):
+        prepare(cells_of(before))
+    (cell, _) = cells_of(after)
+    assert float(cell.method.variance(cell.scene).value) > 1  # the new state is what runs
+
+
+FAULTS = {
+    "no module": (MINE, "their_module:Analog", "there is no module their_module in"),
+    "no class": (MINE, "my_module:Analogue", "Analogue is not there in the module my_module"),
+    "an installed package without it": (MINE, "numpy.nothing:Analog", "the package numpy has no module numpy.nothing"),
+    "no function": ("Analog = 3", "my_module:Analog", "Analog is no class in"),
+    "syntax": ("def f(:", "my_module:Analog", "my_module.py, line 1: invalid syntax"),
+    "import": ("import nothing_here", "my_module:Analog", "cannot import my_module: ModuleNotFoundError"),
+    "exit": ("raise SystemExit(2)", "my_module:Analog", "cannot import my_module: SystemExit"),
+    "constructor": (MINE.replace("scale=1.0", "size"), "my_module:Analog", "missing 1 required positional argument: 'size'"),
+    "no draw": (MINE.replace("def draw", "def drew"), "my_module:Analog", "which has no draw(rng, n)"),
+    "raises": (MINE.replace("return self", "return 1 / 0 + self"), "my_module:Analog", "draw: ZeroDivisionError"),
+    "shape": (MINE.replace("return self", "return 1.0; self"), "my_module:Analog", "must return 1 numbers, got shape ()"),
+    "dimensions": (MINE.replace("dimensions = 1", "dimensions = 'x'"), "my_module:Analog", "dimensions must be a whole"),
+    "no name": (MINE, "my module:Analog", "kind 'my module:Analog'; known are"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_faults_are_told(tmp_path, name):
+    text, kind, words = FAULTS[name]
+    path = study_file(tmp_path / "s", [{"kind": kind}], text)
+    with pytest.raises(FogproofError) as caught:
+        prepare(cells_of(read_study(path)))
+    assert words in str(caught.value)
+    assert "\n" not in str(caught.value)
