@@ -49,7 +49,6 @@ from fogproof.analytic.phase.functions import (
 from fogproof.analytic.phase.rayleigh_coefficient import rayleigh_scattering_coefficient
 from fogproof.analytic.phase.varying import phase_pdf_at
 from fogproof.analytic.proven.golden import Golden, golden_values
-from fogproof.analytic.radiance import radiance
 from fogproof.analytic.rays.ambient_fog import ambient_fog
 from fogproof.analytic.rays.emission import emitted_radiance
 from fogproof.analytic.rays.free_path import free_path
@@ -57,6 +56,7 @@ from fogproof.analytic.rays.furnace import thermal_furnace, white_furnace
 from fogproof.analytic.rays.radiance_by_ode import radiance_by_ode
 from fogproof.analytic.rays.radiance_by_quadrature import radiance_by_quadrature
 from fogproof.analytic.rays.transmittance import optical_thickness, transmittance
+from fogproof.analytic.scene_radiance import radiance
 from fogproof.analytic.sky.colour import sky_colour, sun_colour
 from fogproof.analytic.sky.rayleigh_atmosphere import air_cross_section, air_optical_depth, plane_parallel_sky
 from fogproof.analytic.variance.airlight import airlight_second_moment

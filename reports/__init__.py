@@ -19,7 +19,7 @@ from fogproof.reports.pages.study import write_study_page
 from fogproof.reports.records.runs import (
     RESULTS,
     SCHEMA,
-    Run,
+    RunRecord,
     check_schema,
     load_record,
     parse_record,
@@ -89,7 +89,7 @@ def compare_exit_code(before: dict[str, Any], after: dict[str, Any]) -> int:
     return exit_code(older, newer)
 
 
-def _run(record: Any, origin: str) -> Run:
+def _run(record: Any, origin: str) -> RunRecord:
     check_schema(record, origin)
     return as_run(parse_study(record, origin)) if _is_study(record) else parse_record(record, origin)
 

@@ -61,7 +61,7 @@ class Along(NamedTuple):
     gain_error: np.ndarray
 
 
-class Panels(NamedTuple):
+class DepthPanels(NamedTuple):
     """Panels of all rays, (p,) or (p, channels) each; the errors are estimates for this panel.
 
     jumps  sum of |differences| between neighbouring nodes, of sigma_t and of the source, (p, 2) or (p, channels, 2)
@@ -112,10 +112,10 @@ def integrate_along(
         local = coefficients(medium, origin[which, None, :] + t[..., None] * w, w, channels)
         return extinction(local), np.broadcast_to(source(local), local.sigma_t.shape)
 
-    def evaluate(which: np.ndarray, start: np.ndarray, width: np.ndarray) -> Panels:
+    def evaluate(which: np.ndarray, start: np.ndarray, width: np.ndarray) -> DepthPanels:
         blocks = [slice(i, i + BLOCK) for i in range(0, max(len(which), 1), BLOCK)]
         found = [_panels(look, which[b], start[b], width[b]) for b in blocks]
-        return Panels(*(np.concatenate(columns) for columns in zip(*found, strict=True)))
+        return DepthPanels(*(np.concatenate(columns) for columns in zip(*found, strict=True)))
 
     count = len(origin)
     with budget(count):
@@ -123,11 +123,11 @@ def integrate_along(
     return _compose(panels, count, np.max(np.abs(origin), axis=-1, initial=0.0))
 
 
-Evaluate = Callable[[np.ndarray, np.ndarray, np.ndarray], Panels]
+Evaluate = Callable[[np.ndarray, np.ndarray, np.ndarray], DepthPanels]
 """(rays (p,), starts (p,), widths (p,)) -> panels."""
 
 
-def _refined(evaluate: Evaluate, panels: Panels, count: int, tolerance: float) -> Panels:
+def _refined(evaluate: Evaluate, panels: DepthPanels, count: int, tolerance: float) -> DepthPanels:
     """Return panels in place of these that hold their share of the error, as far as the budget goes."""
     done = panels._replace(**{name: column[:0] for name, column in panels._asdict().items()})
     for turn in range(ROUNDS):
@@ -145,8 +145,8 @@ def _refined(evaluate: Evaluate, panels: Panels, count: int, tolerance: float) -
         halves = [side._replace(tau_error=tau_off, gain_error=gain_off) for side in (left, right)]
         everything = _join(done, *halves)
         bad = _too_wrong(everything, count, tolerance)
-        panels = Panels(*(column[bad] for column in everything))
-        done = Panels(*(column[~bad] for column in everything))
+        panels = DepthPanels(*(column[bad] for column in everything))
+        done = DepthPanels(*(column[~bad] for column in everything))
     return _join(done, panels)
 
 
@@ -167,7 +167,7 @@ def _first(medium: AnyMedium, ray: Ray) -> tuple[np.ndarray, np.ndarray, np.ndar
     return which[owner], start[owner] + step * share, share
 
 
-def _panels(look: Look, which: np.ndarray, start: np.ndarray, width: np.ndarray) -> Panels:
+def _panels(look: Look, which: np.ndarray, start: np.ndarray, width: np.ndarray) -> DepthPanels:
     sigma, q = (np.moveaxis(a, 1, -1) for a in look(which, start[:, None] + width[:, None] * NODES))  # nodes last
     width_ = width.reshape(-1, *[1] * (sigma.ndim - 1))
     with np.errstate(under="ignore", over="ignore"):
@@ -176,17 +176,17 @@ def _panels(look: Look, which: np.ndarray, start: np.ndarray, width: np.ndarray)
     both = np.stack([sigma, q], axis=-2)
     jumps = np.abs(np.diff(both, axis=-1)).sum(axis=-1)
     none = np.zeros_like(tau)
-    return Panels(which, start, width, tau, gain, none, none, jumps, both[..., [0, -1]])
+    return DepthPanels(which, start, width, tau, gain, none, none, jumps, both[..., [0, -1]])
 
 
-def _join(*parts: Panels) -> Panels:
+def _join(*parts: DepthPanels) -> DepthPanels:
     """Return the panels of all parts, in order along each ray."""
-    joined = Panels(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
+    joined = DepthPanels(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
     order = np.lexsort((joined.start, joined.ray))
-    return Panels(*(column[order] for column in joined))
+    return DepthPanels(*(column[order] for column in joined))
 
 
-def _too_wrong(panels: Panels, count: int, tolerance: float) -> np.ndarray:
+def _too_wrong(panels: DepthPanels, count: int, tolerance: float) -> np.ndarray:
     """Return which panels hold more than their share of the error that their ray may have."""
     rays, (first, number) = panels.ray, _starts(panels.ray, count)
     before = np.cumsum(panels.tau, axis=0) - panels.tau
@@ -207,7 +207,7 @@ def _too_wrong(panels: Panels, count: int, tolerance: float) -> np.ndarray:
     return bad & (number[rays] < PANELS) & (panels.width > 4 * EPS * (panels.start + panels.width))
 
 
-def _left_undone(panels: Panels) -> Panels:
+def _left_undone(panels: DepthPanels) -> DepthPanels:
     """Return the panels with the errors that their nodes allow, where no halves say how wrong they are."""
     width = panels.width.reshape(-1, *[1] * (panels.tau.ndim - 1))
     brightest = panels.ends[..., 1, 0] + panels.jumps[..., 1]
@@ -223,7 +223,7 @@ def _starts(rays: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
     return np.minimum(np.cumsum(number) - number, max(len(rays) - 1, 0)), number
 
 
-def _compose(panels: Panels, count: int, reach: np.ndarray) -> Along:
+def _compose(panels: DepthPanels, count: int, reach: np.ndarray) -> Along:
     """Compose the panels of each ray from the camera on, with the errors and what rounding adds.
 
     A rounded position moves a value by at most the change of the coefficient there, so all of them together by the
@@ -235,7 +235,7 @@ def _compose(panels: Panels, count: int, reach: np.ndarray) -> Along:
     last = np.zeros((count, *panels.ends.shape[1:-1]))
     for step in range(number.max(initial=0)):
         now = np.flatnonzero(rank == step)
-        r, p = panels.ray[now], Panels(*(column[now] for column in panels))
+        r, p = panels.ray[now], DepthPanels(*(column[now] for column in panels))
         place = (4 * EPS * (reach[r] + p.start + p.width)).reshape(-1, *[1] * (p.jumps.ndim - 1))
         moved = place * (p.jumps + np.abs(p.ends[..., 0] - last[r]))
         with np.errstate(under="ignore"):

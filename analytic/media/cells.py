@@ -27,7 +27,7 @@ BLOCK = 65536
 """Crossings sorted at a time."""
 
 
-class Axis(NamedTuple):
+class GridAxis(NamedTuple):
     """n rays at coordinates alpha + beta t along one axis, each (n,), and the planes (P,) that bound its cells."""
 
     alpha: Pair
@@ -35,7 +35,7 @@ class Axis(NamedTuple):
     planes: np.ndarray
 
 
-class Segments(NamedTuple):
+class CellSegments(NamedTuple):
     """What n rays meet, (n, segments) each, in order along the ray; a segment outside the medium has length 0.
 
     start, length  [m], as pairs
@@ -43,7 +43,7 @@ class Segments(NamedTuple):
     slack          (n,) how far all crossings of a ray together may be off [m]
     """
 
-    axes: list[Axis]
+    axes: list[GridAxis]
     start: Pair
     length: Pair
     cells: list[np.ndarray]
@@ -53,11 +53,11 @@ class Segments(NamedTuple):
 Pair3 = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Value, low part and error."""
 
-Axes = Callable[[np.ndarray, np.ndarray], list[Axis]]
+Axes = Callable[[np.ndarray, np.ndarray], list[GridAxis]]
 """The axes of a medium's cells for rays with these origins and directions, (n, 3) each."""
 
 
-def segments(ray: Ray, cells: int, axes: Axes) -> Iterator[tuple[slice, Segments]]:
+def segments(ray: Ray, cells: int, axes: Axes) -> Iterator[tuple[slice, CellSegments]]:
     """Yield the segments of the flattened rays, in blocks: which rays, and what they meet.
 
     cells  along the longest axis
@@ -69,7 +69,7 @@ def segments(ray: Ray, cells: int, axes: Axes) -> Iterator[tuple[slice, Segments
         yield rays, _sorted(axes(origin[rays], direction[rays]), length[rays])
 
 
-def thickness_of(sigma_t: np.ndarray, parts: Iterator[tuple[slice, Segments]], mean: Any, relative: float) -> Pair3:
+def thickness_of(sigma_t: np.ndarray, parts: Iterator[tuple[slice, CellSegments]], mean: Any, relative: float) -> Pair3:
     """Return tau of rays (n, channels or 1) as a pair, and its error, from the mean extinction of each segment.
 
     mean      (array, segments) -> (n, channels or 1, segments)
@@ -88,7 +88,7 @@ def thickness_of(sigma_t: np.ndarray, parts: Iterator[tuple[slice, Segments]], m
     return value, low, error
 
 
-def values(array: np.ndarray, part: Segments) -> np.ndarray:
+def values(array: np.ndarray, part: CellSegments) -> np.ndarray:
     """Return the cells' values of an array of the medium, (n, channels or 1, segments); 0-d arrays hold everywhere."""
     if array.ndim == 0:
         return np.broadcast_to(array, (len(part.slack), 1, part.cells[0].shape[1]))
@@ -96,7 +96,7 @@ def values(array: np.ndarray, part: Segments) -> np.ndarray:
     return found[:, None] if found.ndim == 2 else np.moveaxis(found, -1, 1)
 
 
-def settled(axis: Axis, exactly: Callable[[int], Fraction]) -> Axis:
+def settled(axis: GridAxis, exactly: Callable[[int], Fraction]) -> GridAxis:
     """Return the axis with alpha on the right side of a plane that a ray runs along, which pairs may be too short for.
 
     exactly  the coordinate of a ray in exact arithmetic, for the few that need it
@@ -112,7 +112,7 @@ def settled(axis: Axis, exactly: Callable[[int], Fraction]) -> Axis:
     return axis._replace(alpha=(value, low))
 
 
-def _sorted(axes: list[Axis], length: np.ndarray) -> Segments:
+def _sorted(axes: list[GridAxis], length: np.ndarray) -> CellSegments:
     """Sort the crossings of all axes and return what lies between them, cut to [0, length]."""
     crossings = [_crossings(axis) for axis in axes]
     value, low, uncertainty = (np.concatenate(columns, axis=-1) for columns in zip(*crossings, strict=True))
@@ -139,10 +139,10 @@ def _sorted(axes: list[Axis], length: np.ndarray) -> Segments:
     nothing = outside | (start[0] == np.inf)
     start = dd.where(nothing, dd.pair(0.0), start)
     between = dd.where(nothing, dd.pair(0.0), dd.add(end, dd.negative(start)))
-    return Segments(axes, start, between, cells, slack)
+    return CellSegments(axes, start, between, cells, slack)
 
 
-def _crossings(axis: Axis) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _crossings(axis: GridAxis) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the pair of where the planes are met, (n, P), and its uncertainty; +-inf for rays that run along them."""
     alpha, beta = (dd.each(lambda x: x[:, None], pair) for pair in (axis.alpha, axis.beta))
     along = beta[0] == 0

@@ -13,7 +13,7 @@ from fogproof.analytic.arithmetic import double_double as dd
 from fogproof.analytic.arithmetic.double_double import UNIT
 from fogproof.analytic.geometry.rays import Thickness
 from fogproof.analytic.media.breakpoints import Breaks, between
-from fogproof.analytic.media.cells import SOURCE, Axis, Segments, segments, settled, thickness_of, values
+from fogproof.analytic.media.cells import SOURCE, CellSegments, GridAxis, segments, settled, thickness_of, values
 from fogproof.analytic.media.coefficients import Coefficients, Points, by_albedo
 from fogproof.analytic.proven.balls import rational, vector
 from fogproof.analytic.proven.cells import constant_cells
@@ -45,14 +45,14 @@ def breakpoints(
     return Breaks(enter, leave, [(medium.boundaries - height) / rise])
 
 
-def crossed(medium: PiecewiseConstantMedium, ray: Ray) -> Iterator[tuple[slice, Segments]]:
+def crossed(medium: PiecewiseConstantMedium, ray: Ray) -> Iterator[tuple[slice, CellSegments]]:
     """Yield what the flattened rays meet, in blocks; see `cells`."""
     return segments(ray, len(medium.sigma_t), partial(_axes, medium))
 
 
-def _axes(medium: PiecewiseConstantMedium, origin: np.ndarray, direction: np.ndarray) -> list[Axis]:
+def _axes(medium: PiecewiseConstantMedium, origin: np.ndarray, direction: np.ndarray) -> list[GridAxis]:
     normal = [Fraction(x) for x in dd.flushed(medium.axis)]
-    layers = Axis(dd.dot(medium.axis, origin), dd.dot(medium.axis, direction), medium.boundaries)
+    layers = GridAxis(dd.dot(medium.axis, origin), dd.dot(medium.axis, direction), medium.boundaries)
 
     def height(ray: int) -> Fraction:
         return sum((a * Fraction(x) for a, x in zip(normal, origin[ray], strict=True)), Fraction(0))

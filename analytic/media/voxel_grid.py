@@ -15,7 +15,7 @@ from fogproof.analytic.arithmetic.double_double import UNIT, Pair
 from fogproof.analytic.arithmetic.error_free import EPS
 from fogproof.analytic.geometry.rays import Thickness
 from fogproof.analytic.media.breakpoints import Breaks, between
-from fogproof.analytic.media.cells import SOURCE, Axis, Segments, segments, settled, thickness_of, values
+from fogproof.analytic.media.cells import SOURCE, CellSegments, GridAxis, segments, settled, thickness_of, values
 from fogproof.analytic.media.coefficients import Coefficients, Points
 from fogproof.analytic.media.squared_extinction import Integral, by_panels, of_squared
 from fogproof.analytic.proven.balls import flint, rational, vector
@@ -89,12 +89,12 @@ def breakpoints(medium: VoxelGrid, origin: np.ndarray, direction: np.ndarray, le
     return Breaks(enter, leave, found)
 
 
-def crossed(medium: VoxelGrid, ray: Ray) -> Iterator[tuple[slice, Segments]]:
+def crossed(medium: VoxelGrid, ray: Ray) -> Iterator[tuple[slice, CellSegments]]:
     """Yield what the flattened rays meet, in blocks; see `cells`."""
     return segments(ray, max(medium.sigma_t.shape[:3]), partial(_axes, medium))
 
 
-def _axes(medium: VoxelGrid, origin: np.ndarray, direction: np.ndarray) -> list[Axis]:
+def _axes(medium: VoxelGrid, origin: np.ndarray, direction: np.ndarray) -> list[GridAxis]:
     direction = dd.flushed(direction)
     axes = []
     for i, n in enumerate(medium.sigma_t.shape[:3]):
@@ -102,7 +102,7 @@ def _axes(medium: VoxelGrid, origin: np.ndarray, direction: np.ndarray) -> list[
         alpha = dd.add(dd.pair(origin[:, i]), dd.pair(-medium.lower[i]))
         planes = np.concatenate([[0.0], np.arange(n) + 0.5, [n]]) if is_trilinear(medium) else np.arange(n + 1.0)
         per_metre = dd.divide(dd.pair(float(n)), size)
-        axis = Axis(dd.times(alpha, per_metre), dd.times(dd.pair(direction[:, i]), per_metre), planes)
+        axis = GridAxis(dd.times(alpha, per_metre), dd.times(dd.pair(direction[:, i]), per_metre), planes)
         axes.append(settled(axis, _coordinate(origin[:, i], medium.lower[i], medium.upper[i], n)))
     return axes
 
@@ -122,7 +122,7 @@ def thickness(medium: VoxelGrid, ray: Ray, channels: int | None) -> Thickness:
     return Thickness(value, low, error, method, SOURCE)
 
 
-def interpolate(array: np.ndarray, part: Segments) -> np.ndarray:
+def interpolate(array: np.ndarray, part: CellSegments) -> np.ndarray:
     """Return the mean along each segment of a trilinear array (nx, ny, nz), channels last: (n, channels or 1, segments).
 
     `part` has cells between the centres of voxels: cell j lies between the centres j - 1 and j, and the first and the
@@ -144,7 +144,7 @@ def interpolate(array: np.ndarray, part: Segments) -> np.ndarray:
     return mean
 
 
-def _above_centre(axis: Axis, cell: np.ndarray, t: Pair) -> np.ndarray:
+def _above_centre(axis: GridAxis, cell: np.ndarray, t: Pair) -> np.ndarray:
     """Return how far the points at t are above the lower centre of their cell, in [0, 1]."""
     alpha, beta = (dd.each(lambda x: x[:, None], pair) for pair in (axis.alpha, axis.beta))
     place = dd.add(dd.add(alpha, dd.times(beta, t)), dd.pair(0.5 - cell))

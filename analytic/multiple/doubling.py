@@ -34,7 +34,7 @@ class Layer(NamedTuple):
     glow: np.ndarray
 
 
-class Medium(NamedTuple):
+class ScatteringLayer(NamedTuple):
     """Scattering at directions mu (n,) of weights w: shares backward, forward (b, n, n) so that
 
     c p(mu_i, mu_j)/2 = backward or forward, p averaged over azimuth (or its Fourier mode); absorbed (b,) is 1 - c.
@@ -49,7 +49,7 @@ class Medium(NamedTuple):
     balanced: np.ndarray
 
 
-def layer(medium: Medium, tau: np.ndarray) -> Layer:
+def layer(medium: ScatteringLayer, tau: np.ndarray) -> Layer:
     """Return layers of optical thickness tau > 0 (b,)."""
     times = max(0, int(np.ceil(np.log2(np.max(tau) / np.min(medium.mu)))))
     thin = thin_layer(medium, tau * 2.0**-times)
@@ -59,7 +59,7 @@ def layer(medium: Medium, tau: np.ndarray) -> Layer:
     return thin
 
 
-def thin_layer(medium: Medium, tau: np.ndarray) -> Layer:
+def thin_layer(medium: ScatteringLayer, tau: np.ndarray) -> Layer:
     """Return layers of a thickness tau (b,) of at most the smallest cosine.
 
     Upwards from the lower side, where 1 leaves and nothing enters, light obeys a linear differential equation, whose power
@@ -96,7 +96,7 @@ def thin_layer(medium: Medium, tau: np.ndarray) -> Layer:
     return Layer(_symmetric(R), _symmetric(T), ray, glow)
 
 
-def doubled(one: Layer, medium: Medium) -> Layer:
+def doubled(one: Layer, medium: ScatteringLayer) -> Layer:
     """Return two such layers on one another."""
     R, T, ray, glow = one
     row, column = ray[..., None], ray[:, None, :]

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fogproof.analytic.multiple.doubling import SIDE, Medium
+from fogproof.analytic.multiple.doubling import SIDE, ScatteringLayer
 from fogproof.analytic.multiple.slab_modes import legendre
 
 
@@ -34,7 +34,7 @@ def scaled(c: np.ndarray, tau: np.ndarray, chi: np.ndarray) -> Scaled:
     return Scaled(c * (1 - forward) / rest, (1 - c) / rest, tau * rest, (chi[:-1] - forward) / (1 - forward))
 
 
-def medium(slabs: Scaled, mu: np.ndarray, w: np.ndarray, aside: np.ndarray) -> Medium:
+def medium(slabs: Scaled, mu: np.ndarray, w: np.ndarray, aside: np.ndarray) -> ScatteringLayer:
     """Return the scattering, averaged over azimuth, at nodes mu of weights w and at directions `aside` that are no nodes."""
     n = len(mu)
     P = legendre(len(slabs.chi) - 1, np.concatenate([mu, aside]))
@@ -43,7 +43,7 @@ def medium(slabs: Scaled, mu: np.ndarray, w: np.ndarray, aside: np.ndarray) -> M
     weighted = (slabs.chi * (2 * np.arange(len(slabs.chi)) + 1))[:, None] * P
     even, odd = P[0::2].T @ weighted[0::2], P[1::2].T @ weighted[1::2]
     half = slabs.albedo[:, None, None] / 2
-    return Medium(
+    return ScatteringLayer(
         np.concatenate([mu, aside]),
         np.concatenate([w / np.sum(w), np.full(len(aside), SIDE)]),
         half * (even + odd),

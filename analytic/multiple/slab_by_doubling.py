@@ -49,7 +49,7 @@ FAINT, THINNEST = 1e-30, 1e-200
 """Albedo and thickness below which everything scattered (for the thickness, or absorbed) is proportional to them."""
 
 
-class Moments(NamedTuple):
+class LayerMoments(NamedTuple):
     """chi_0 …, and what a phase function whose first moments are off by their errors differs by, integrated over directions.
 
     By Parseval's theorem that is at most the root of the sum of (2 l + 1) error_l^2.
@@ -60,11 +60,11 @@ class Moments(NamedTuple):
 
 
 @lru_cache(maxsize=32)
-def phase_moments(phase: PhaseFunction) -> Moments:
+def phase_moments(phase: PhaseFunction) -> LayerMoments:
     """Return as many moments as the finest solution needs."""
     moments = phase_legendre_moments(phase, MOMENTS * LEVELS[-1])
     weight = 2 * np.arange(len(moments.value)) + 1
-    return Moments(moments.value, np.sqrt(np.cumsum(weight * moments.error**2)))
+    return LayerMoments(moments.value, np.sqrt(np.cumsum(weight * moments.error**2)))
 
 
 def is_isotropic(phase: PhaseFunction) -> bool:

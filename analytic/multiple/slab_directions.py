@@ -14,7 +14,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
-from fogproof.analytic.multiple.doubling import SIDE, Medium, layer
+from fogproof.analytic.multiple.doubling import SIDE, ScatteringLayer, layer
 from fogproof.analytic.multiple.mode_integrals import FARTHEST
 from fogproof.analytic.multiple.scattering_arguments import seen_at
 from fogproof.analytic.multiple.scattering_kernel import Scaled, associated_legendre, scaled
@@ -132,7 +132,7 @@ def _many_times(slab: Scaled, beams: Beams, side: Side, n: int, once: np.ndarray
     return total / np.pi
 
 
-def _medium(slab: Scaled, mu: np.ndarray, w: np.ndarray, aside: np.ndarray, orders: np.ndarray) -> Medium:
+def _medium(slab: Scaled, mu: np.ndarray, w: np.ndarray, aside: np.ndarray, orders: np.ndarray) -> ScatteringLayer:
     """Return the scattering in Fourier modes `orders` at nodes and at directions aside."""
     n = len(mu)
     every, last = np.concatenate([mu, aside]), len(slab.chi) - 1
@@ -148,4 +148,4 @@ def _medium(slab: Scaled, mu: np.ndarray, w: np.ndarray, aside: np.ndarray, orde
     half = float(slab.albedo[0]) / 2
     weights = np.concatenate([w / np.sum(w), np.full(len(aside), SIDE)])
     absorbed = np.full(len(orders), slab.absorbed[0])
-    return Medium(every, weights, half * forward, half * backward, absorbed, orders == 0)
+    return ScatteringLayer(every, weights, half * forward, half * backward, absorbed, orders == 0)

@@ -38,7 +38,7 @@ HUNTS, ROUNDS, MOST = 3, 60, 20000
 Pair = tuple[np.ndarray, np.ndarray]
 
 
-class Panels(NamedTuple):
+class PhasePanels(NamedTuple):
     """Panels in order, (p,): from `low` over `width` in s, with the probability in each and its error.
 
     missing  what all of them lack of 1
@@ -131,7 +131,7 @@ def airlight(phase: PhaseFunction) -> AirlightPhase:
 
 
 @lru_cache(maxsize=64)
-def panels(phase: PhaseFunction) -> Panels:
+def panels(phase: PhaseFunction) -> PhasePanels:
     """Return panels on which the pdf is smooth, found by halving."""
     reach = NEAR if given(phase, ROOM, "density") is None else FAR
     kinks = np.asarray(given(phase, ROOM, "kinks")(phase) if given(phase, ROOM, "kinks") else [], float)
@@ -146,7 +146,7 @@ def panels(phase: PhaseFunction) -> Panels:
         if missing <= FOUND + 4 * float(error.sum()) or len(low) > MOST or hunt == HUNTS:
             break
         low, width = _split(low, width, np.full(len(low), 4))
-    return Panels(low, width, mass, error, missing)
+    return PhasePanels(low, width, mass, error, missing)
 
 
 def _halved(phase: PhaseFunction, low: np.ndarray, width: np.ndarray) -> tuple[np.ndarray, ...]:

@@ -33,7 +33,7 @@ STEP = 2.0**-44
 
 
 @dataclass(frozen=True)
-class Series:
+class MieSeries:
     """Coefficients of orders 1 … N for the given sphere and three others, (4, N) each, and their relative rounding error."""
 
     a: np.ndarray
@@ -104,7 +104,7 @@ def airlight(phase: Mie) -> AirlightPhase:
 
 
 @lru_cache(maxsize=64)
-def _series(phase: Mie) -> Series:
+def _series(phase: Mie) -> MieSeries:
     """Return the coefficients of the sphere, of two with x or m larger by STEP, and again of the sphere.
 
     Those of the last come from another starting order: their differences show what miepython's continued fraction, which
@@ -124,7 +124,7 @@ def _series(phase: Mie) -> Series:
     spheres = ((m, x, start), (m, x * (1 + STEP), start), (m * (1 + STEP), x, start), (m, x, start + 1))
     a, b = np.array([[series[:order] for series in _coefficients(*sphere)] for sphere in spheres]).swapaxes(0, 1)
     # Measured: the recurrences drift like sqrt(N), and a_n loses digits when it is small because m is close to 1.
-    return Series(a, b, 3 * EPS * (math.sqrt(order) + 1 + 1 / (abs(m - 1) * max(1, x**0.5))))
+    return MieSeries(a, b, 3 * EPS * (math.sqrt(order) + 1 + 1 / (abs(m - 1) * max(1, x**0.5))))
 
 
 def _starting_order(z: float, x: float, order: int) -> int:
@@ -154,7 +154,7 @@ def _coefficients(m: complex, x: float, order: int) -> tuple[np.ndarray, np.ndar
     return a, b
 
 
-def _amplitudes(series: Series, mu: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _amplitudes(series: MieSeries, mu: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return S1 and S2, (4, n) for n cosines, and the size of their rounding errors, (n,).
 
     The upward recurrence of pi_n is run on its differences d_n = pi_n - pi_(n-1) and on 1 - |mu|, which keeps the phase of

@@ -10,7 +10,7 @@ from fogproof.analytic.proven.balls import flint, rational
 from fogproof.analytic.proven.pieces import Piece, constant
 
 
-class Stretch(NamedTuple):
+class ProvenStretch(NamedTuple):
     """Between two crossings: where it starts, its length (None if endless), and the cell along each axis."""
 
     start: Any
@@ -18,7 +18,7 @@ class Stretch(NamedTuple):
     cell: tuple[int, ...]
 
 
-def stretches(o: list[Any], w: list[Any], planes: list[list[Any]], s: Any) -> Iterator[Stretch]:
+def stretches(o: list[Any], w: list[Any], planes: list[list[Any]], s: Any) -> Iterator[ProvenStretch]:
     """Yield what lies between consecutive crossings of all planes, each crossing an exact fraction.
 
     o, w    coordinate and its growth a metre, along each axis
@@ -37,7 +37,7 @@ def stretches(o: list[Any], w: list[Any], planes: list[list[Any]], s: Any) -> It
         cell = [_cell(places, p) for places, p in zip(planes, place, strict=True)]
         known = tuple(c for c in cell if c is not None)
         if len(known) == len(cell):
-            yield Stretch(start, None if end is None else end - start, known)
+            yield ProvenStretch(start, None if end is None else end - start, known)
 
 
 def constant_cells(medium: Any, o: list[Any], w: list[Any], planes: list[list[Any]], s: Any) -> list[Piece]:

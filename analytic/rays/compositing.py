@@ -13,7 +13,7 @@ import numpy as np
 from fogproof.analytic.arithmetic import double_double as dd
 from fogproof.analytic.arithmetic.error_free import ELEMENTARY, EPS, TINY, exp_minus
 from fogproof.analytic.geometry.rays import channels_of
-from fogproof.analytic.media.cells import Segments, values
+from fogproof.analytic.media.cells import CellSegments, values
 from fogproof.contracts import Reference
 from fogproof.scene import Ray
 from fogproof.validate import Channels
@@ -21,7 +21,7 @@ from fogproof.validate import Channels
 
 def composite(
     medium: Any,
-    parts: Iterator[tuple[slice, Segments]],
+    parts: Iterator[tuple[slice, CellSegments]],
     ray: Ray,
     ambient: Channels,
     background: Channels,

@@ -35,7 +35,7 @@ class Flight(NamedTuple):
     limit: float
 
 
-class Light(NamedTuple):
+class LightData(NamedTuple):
     """Transmittance of a way, or an unbiased estimate of it, and the same as above."""
 
     value: float
@@ -49,7 +49,7 @@ def fly(rng: np.random.Generator, medium: Any, bound: Any, at: Any, length: floa
     raise NotImplementedError("runs inside kernels only")
 
 
-def shine(rng: np.random.Generator, medium: Any, bound: Any, at: Any, length: float) -> Light:
+def shine(rng: np.random.Generator, medium: Any, bound: Any, at: Any, length: float) -> LightData:
     """Return the transmittance from a point in a direction over `length`; in kernels only."""
     raise NotImplementedError("runs inside kernels only")
 
@@ -66,8 +66,8 @@ def _fly_uniform(rng: np.random.Generator, medium: Any, bound: Any, at: Any, len
     return Flight(min(t, length), t < length, 1, np.nan, np.nan)
 
 
-def _shine_uniform(rng: np.random.Generator, medium: Any, bound: Any, at: Any, length: float) -> Light:
-    return Light(np.exp(-medium.sigma * length) if medium.sigma > 0.0 else 1.0, 1, np.nan, np.nan)
+def _shine_uniform(rng: np.random.Generator, medium: Any, bound: Any, at: Any, length: float) -> LightData:
+    return LightData(np.exp(-medium.sigma * length) if medium.sigma > 0.0 else 1.0, 1, np.nan, np.nan)
 
 
 def _fly_tracked(rng: np.random.Generator, medium: Any, bound: Any, at: Any, length: float) -> Flight:
@@ -93,7 +93,7 @@ def _fly_tracked(rng: np.random.Generator, medium: Any, bound: Any, at: Any, len
     return Flight(length, False, lookups, np.nan, np.nan)
 
 
-def _shine_tracked(rng: np.random.Generator, medium: Any, bound: Any, at: Any, length: float) -> Light:
+def _shine_tracked(rng: np.random.Generator, medium: Any, bound: Any, at: Any, length: float) -> LightData:
     line = along(at)
     cell = begin(bound, line, length)
     depth, lookups, value = rng.standard_exponential(), 0, 1.0
@@ -106,13 +106,13 @@ def _shine_tracked(rng: np.random.Generator, medium: Any, bound: Any, at: Any, l
             lookups += 1
             sigma = sigma_t(medium, 0, line.ox + t * line.dx, line.oy + t * line.dy, line.oz + t * line.dz)
             if breaks(sigma, 0.0, majorant):
-                return Light(value, lookups, sigma, majorant)
+                return LightData(value, lookups, sigma, majorant)
             value *= 1.0 - sigma / majorant
             depth = rng.standard_exponential()
             room = majorant * (stop - t)
         depth -= room
         cell = onward(bound, line, cell)
-    return Light(value, lookups, np.nan, np.nan)
+    return LightData(value, lookups, np.nan, np.nan)
 
 
 _INLINED = {"forceinline": True, **KERNEL_OPTIONS}

@@ -13,7 +13,7 @@ from numba.extending import overload
 
 from fogproof.estimators.kernels.bounds import begin, onward, piece
 from fogproof.estimators.kernels.compiling import KERNEL_OPTIONS, inlined
-from fogproof.estimators.kernels.flights import Flight, Light, along
+from fogproof.estimators.kernels.flights import Flight, LightData, along
 from fogproof.estimators.kernels.media import sigma_t
 from fogproof.estimators.kernels.path_data import UniformSpectralData
 from fogproof.estimators.kernels.tracking import breaks
@@ -28,7 +28,7 @@ def fly_in_colour(
 
 def shine_in_colour(
     rng: np.random.Generator, medium: Any, bound: Any, at: Any, length: float, through: np.ndarray
-) -> Light:
+) -> LightData:
     """Write the transmittance of each channel over `length` to `through` (channels,); in kernels only."""
     raise NotImplementedError("runs inside kernels only")
 
@@ -62,10 +62,10 @@ def _fly_uniform(
 
 def _shine_uniform(
     rng: np.random.Generator, medium: Any, bound: Any, at: Any, length: float, through: np.ndarray
-) -> Light:
+) -> LightData:
     for c in range(len(through)):
         through[c] = np.exp(-medium.sigma[c] * length) if medium.sigma[c] > 0.0 else 1.0
-    return Light(np.nan, 1, np.nan, np.nan)
+    return LightData(np.nan, 1, np.nan, np.nan)
 
 
 def _fly_tracked(
@@ -100,7 +100,7 @@ def _fly_tracked(
 
 def _shine_tracked(
     rng: np.random.Generator, medium: Any, bound: Any, at: Any, length: float, through: np.ndarray
-) -> Light:
+) -> LightData:
     line = along(at)
     cell = begin(bound, line, length)
     depth, lookups = rng.standard_exponential(), 0
@@ -116,13 +116,13 @@ def _shine_tracked(
             for c in range(len(through)):
                 sigma = sigma_t(medium, c, line.ox + t * line.dx, line.oy + t * line.dy, line.oz + t * line.dz)
                 if breaks(sigma, 0.0, majorant):
-                    return Light(np.nan, lookups, sigma, majorant)
+                    return LightData(np.nan, lookups, sigma, majorant)
                 through[c] *= 1.0 - sigma / majorant
             depth = rng.standard_exponential()
             room = majorant * (stop - t)
         depth -= room
         cell = onward(bound, line, cell)
-    return Light(np.nan, lookups, np.nan, np.nan)
+    return LightData(np.nan, lookups, np.nan, np.nan)
 
 
 _INLINED = {"forceinline": True, **KERNEL_OPTIONS}

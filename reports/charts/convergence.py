@@ -18,7 +18,7 @@ _DOTTED = (2.0, 3.0)
 
 
 @dataclass(frozen=True)
-class Curve:
+class ErrorCurve:
     """One estimator: `error` in [low, high] after `effort` samples, steps or seconds; `predicted` is the oracle's, NaN if unknown.
 
     look    number of its colour and mark; a curve and its relatives share one
@@ -41,7 +41,7 @@ class Convergence:
 
     across: str
     up: str
-    curves: tuple[Curve, ...]
+    curves: tuple[ErrorCurve, ...]
     confidence: float
     slope: float = -0.5
 

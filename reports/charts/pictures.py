@@ -7,13 +7,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
+import numpy as np
+
 from fogproof.reports.charts.colours import ON_PAGE, PAPER
 from fogproof.reports.charts.sheet import Sheet
 from fogproof.reports.charts.sheet_png import png
 from fogproof.reports.files import write_file
 
 
-class Chart(Protocol):
+class PictureChart(Protocol):
     """Data of one figure that draws itself."""
 
     def draw(self, sheet: Sheet) -> str:
@@ -53,8 +55,9 @@ class Picture:
         return f'<svg{"".join(kept)} aria-hidden="true">{rest}'
 
 
-def render(chart: Chart, stem: str, size: tuple[float, float] = (560, 340)) -> Picture:
+def render(chart: PictureChart, stem: str, size: tuple[float, float] = (560, 340)) -> Picture:
     """Draw on a new sheet of `size` [px] and return it as SVG and PNG; equal data give equal bytes."""
     sheet = Sheet(*size, PAPER)
-    words = chart.draw(sheet)
+    with np.errstate(all="ignore"):  # a record changed by hand may hold anything; what is not finite is not drawn
+        words = chart.draw(sheet)
     return Picture(stem, words, sheet.svg(), png(sheet))

@@ -24,7 +24,7 @@ _LINES: list[dict[str, Any]] = [
 
 
 @dataclass(frozen=True)
-class Polar:
+class PolarPanel:
     """Phase functions as the radius over the scattering angle; light travels to the right before it scatters."""
 
     def draw(self, figure: Figure) -> str:
@@ -51,7 +51,7 @@ class Polar:
 
 
 @dataclass(frozen=True)
-class Linear:
+class LinearPanel:
     """Henyey-Greenstein over the cosine: the curve is the oracle's, the shares are sampled."""
 
     rng: np.random.Generator

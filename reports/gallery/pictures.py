@@ -14,7 +14,7 @@ from fogproof.reports.charts.pictures import Picture
 from fogproof.reports.files import write_file
 from fogproof.reports.gallery.airlight import FoggyScene, Glow, SamplesAroundALight
 from fogproof.reports.gallery.media import Fog, Transmittances, closed_media, tracked_media
-from fogproof.reports.gallery.phase import Approximation, Linear, Polar, SphereSizes
+from fogproof.reports.gallery.phase import Approximation, LinearPanel, PolarPanel, SphereSizes
 from fogproof.reports.gallery.plots import Plot, render_plot
 from fogproof.reports.gallery.sky import SkyAndSunset
 from fogproof.reports.gallery.tracking import Collisions
@@ -28,8 +28,8 @@ def drawings(seed: int) -> dict[str, tuple[str, Plot]]:
         return batch_generator(seed, f"gallery/{name}", 0, 0)
 
     return {
-        "phase-polar": ("Phase functions", Polar()),
-        "phase-henyey-greenstein": ("Henyey-Greenstein, sampled", Linear(stream("linear"))),
+        "phase-polar": ("Phase functions", PolarPanel()),
+        "phase-henyey-greenstein": ("Henyey-Greenstein, sampled", LinearPanel(stream("linear"))),
         "phase-schlick": ("Henyey-Greenstein and Schlick", Approximation()),
         "phase-mie": ("Lorenz-Mie at three sizes", SphereSizes()),
         "transmittance": ("Transmittance in closed form", Transmittances(stream("closed"), closed_media())),

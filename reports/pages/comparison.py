@@ -12,7 +12,7 @@ from fogproof.reports.charts.pictures import Picture, render
 from fogproof.reports.files import write_file
 from fogproof.reports.pages.templates import cases as some_cases
 from fogproof.reports.pages.templates import fill
-from fogproof.reports.records.runs import Case, Run
+from fogproof.reports.records.runs import Case, RunRecord
 
 CHANGES = ("worse", "changed", "gone", "mended", "new", "same")
 """What may have become of a case, from what needs attention to what does not."""
@@ -45,20 +45,20 @@ class Pair:
         return self.after is not None and self.after.status in _WRONG
 
 
-def pair_cases(before: Run, after: Run) -> list[Pair]:
+def pair_cases(before: RunRecord, after: RunRecord) -> list[Pair]:
     """Return the cases of both runs, matched by name, what needs attention first."""
     old, new = ({case.name: case for case in run.cases} for run in (before, after))
     pairs = [Pair(name, old.get(name), new.get(name)) for name in old | new]
     return sorted(pairs, key=lambda pair: (CHANGES.index(pair.change), not pair.wrong))
 
 
-def exit_code(before: Run, after: Run) -> int:
+def exit_code(before: RunRecord, after: RunRecord) -> int:
     """Return 1 if a case came out worse in the newer run, 3 if one is gone: nothing is known of it any more; else 0."""
     changes = {pair.change for pair in pair_cases(before, after)}
     return 1 if "worse" in changes else 3 if "gone" in changes or after.unfinished else 0
 
 
-def write_comparison_page(before: Run, after: Run, folder: Path) -> Path:
+def write_comparison_page(before: RunRecord, after: RunRecord, folder: Path) -> Path:
     """Write `folder/comparison.html` and its figures; return the page's path."""
     pairs = pair_cases(before, after)
     figures = _figures(pairs)
@@ -98,7 +98,7 @@ def headline(counts: dict[str, int], still: int, total: int) -> tuple[str, str]:
     return first, ", ".join(listed) or "Both records are empty"
 
 
-def _settings(before: Run, after: Run) -> list[tuple[str, Any, Any]]:
+def _settings(before: RunRecord, after: RunRecord) -> list[tuple[str, Any, Any]]:
     """Return (name, before, after) of what could explain a change, what differs first."""
     names = ("command", "seed", "alpha", "fogproof", "started", "seconds", "exit_code")
     old, new = ({name: getattr(run, name) for name in names} | run.environment for run in (before, after))

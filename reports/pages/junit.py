@@ -15,11 +15,11 @@ from xml.etree import ElementTree
 
 from fogproof.reports.files import write_file
 from fogproof.reports.pages.summaries import blind
-from fogproof.reports.records.runs import Case, Run
+from fogproof.reports.records.runs import Case, RunRecord
 from fogproof.text import visible
 
 
-def write_junit(run: Run, folder: str | Path) -> Path:
+def write_junit(run: RunRecord, folder: str | Path) -> Path:
     """Write `folder/junit.xml` and return its path. Names may hold anything: what XML cannot say is made visible."""
     name = f"fogproof {run.kind}" + (f", {run.unfinished}" if run.unfinished else "")
     suite = ElementTree.Element("testsuite", name=visible(name), timestamp=visible(run.started))
@@ -36,7 +36,7 @@ def write_junit(run: Run, folder: str | Path) -> Path:
     return write_file(Path(folder) / "junit.xml", ElementTree.tostring(suites, "utf-8", xml_declaration=True))
 
 
-def _add(suite: ElementTree.Element, run: Run, case: Case) -> str:
+def _add(suite: ElementTree.Element, run: RunRecord, case: Case) -> str:
     """Add one test case and return the tag that tells its outcome, "" for a pass."""
     test = ElementTree.SubElement(
         suite,
@@ -62,7 +62,7 @@ def _add(suite: ElementTree.Element, run: Run, case: Case) -> str:
     return tag
 
 
-def _add_missing(suite: ElementTree.Element, run: Run, name: str) -> str:
+def _add_missing(suite: ElementTree.Element, run: RunRecord, name: str) -> str:
     test = ElementTree.SubElement(suite, "testcase", classname=f"fogproof.{run.kind}", name=visible(name), time="0.000")
     ElementTree.SubElement(test, "skipped", message="not run: the run was stopped before it", type="gone")
     return "skipped"

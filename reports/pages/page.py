@@ -17,7 +17,7 @@ from fogproof.reports.files import write_file
 from fogproof.reports.pages.summaries import blind, catches, needs, systems
 from fogproof.reports.pages.templates import cases as some_cases
 from fogproof.reports.pages.templates import fill
-from fogproof.reports.records.runs import Case, Run, Status
+from fogproof.reports.records.runs import Case, RunRecord, Status
 from fogproof.reports.text import file_stem
 
 INLINE_BYTES = 5_000_000
@@ -39,7 +39,7 @@ class Shown:
     svg: str
 
 
-def write_page(run: Run, folder: str | Path) -> Path:
+def write_page(run: RunRecord, folder: str | Path) -> Path:
     """Write `folder/index.html` and its figures as `folder/figures/*.png` and `*.svg`; return the page's path.
 
     A pass has its first figure alone: the others are figures of noise. Findings about the same data share one figure.
@@ -80,7 +80,7 @@ def write_page(run: Run, folder: str | Path) -> Path:
     return write_file(folder / "index.html", page)
 
 
-def headline(run: Run) -> tuple[str, str]:
+def headline(run: RunRecord) -> tuple[str, str]:
     """Return the verdict of a run in words: a sentence that stands alone, and the counts behind it."""
     count = {status: sum(case.status == status for case in run.cases) for status in STATUSES}
     wrong, of = count["rejected"] + count["surprise"], f"of {some_cases(len(run.cases))}"
@@ -116,7 +116,7 @@ def headline(run: Run) -> tuple[str, str]:
     return first, ", ".join(counts) or "The record is empty"
 
 
-def _tone(run: Run) -> str:
+def _tone(run: RunRecord) -> str:
     found = {case.status for case in run.cases}
     if found & {"rejected", "surprise", "error"} or any(row.broken for row in run.oracle) or any(map(blind, run.cases)):
         return "bad"
@@ -134,7 +134,7 @@ def _figures(case: Case) -> list[tuple[int, Finding, dict[str, Any]]]:
     return found
 
 
-def _overview(run: Run) -> Iterable[tuple[str, Any, tuple[float, float]]]:
+def _overview(run: RunRecord) -> Iterable[tuple[str, Any, tuple[float, float]]]:
     """Yield the figures of the whole run: only subjects that ought to be right have uniform p-values."""
     right = [case.verdict for case in run.cases if case.verdict is not None and case.expected == "not rejected"]
     exact = tuple(

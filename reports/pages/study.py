@@ -7,22 +7,22 @@ from dataclasses import dataclass
 from math import inf, nan
 from pathlib import Path
 
-from fogproof.reports.charts.convergence import Convergence, Curve
+from fogproof.reports.charts.convergence import Convergence, ErrorCurve
 from fogproof.reports.charts.pictures import Picture, render
 from fogproof.reports.files import write_file
 from fogproof.reports.pages.page import STATUSES
 from fogproof.reports.pages.summaries import needs
 from fogproof.reports.pages.templates import fill
 from fogproof.reports.records.runs import Case, Status
-from fogproof.reports.records.studies import Entry, SceneRecord, Study, as_run
+from fogproof.reports.records.studies import SceneRecord, StudyEntry, StudyRecord, as_run
 from fogproof.reports.text import file_stem
 
 
 @dataclass(frozen=True)
-class Row:
+class StudyRow:
     """An estimator as the page shows it: its entry and its verdict."""
 
-    entry: Entry
+    entry: StudyEntry
     case: Case
 
 
@@ -31,11 +31,11 @@ class SceneShown:
     """A scene with its figures (title, picture), and its estimators, the best first."""
 
     scene: SceneRecord
-    rows: tuple[Row, ...]
+    rows: tuple[StudyRow, ...]
     figures: tuple[tuple[str, Picture], ...]
 
 
-def write_study_page(study: Study, folder: Path) -> Path:
+def write_study_page(study: StudyRecord, folder: Path) -> Path:
     """Write `folder/index.html` and its figures; return the page's path."""
     run = as_run(study)
     cases = {case.name: case for case in run.cases}
@@ -47,7 +47,7 @@ def write_study_page(study: Study, folder: Path) -> Path:
         )
         for _, picture in figures:
             picture.save(folder / "figures")
-        rows = [Row(entry, cases[f"{scene.name} / {entry.name}"]) for entry in scene.estimators]
+        rows = [StudyRow(entry, cases[f"{scene.name} / {entry.name}"]) for entry in scene.estimators]
         shown.append(SceneShown(scene, tuple(sorted(rows, key=_place)), figures))
     counts = {status: sum(case.status == status for case in run.cases) for status in STATUSES}
     page = fill(
@@ -66,7 +66,7 @@ def write_study_page(study: Study, folder: Path) -> Path:
     return write_file(folder / "index.html", page)
 
 
-def headline(study: Study, counts: Mapping[Status, int]) -> tuple[str, str]:
+def headline(study: StudyRecord, counts: Mapping[Status, int]) -> tuple[str, str]:
     """Return the outcome of a study in words: a sentence that stands alone, and the counts behind it."""
     total = sum(counts.values())
     missing = study.batches.get("planned", 0) - study.batches.get("done", 0)
@@ -89,13 +89,13 @@ def headline(study: Study, counts: Mapping[Status, int]) -> tuple[str, str]:
     return first, ", ".join([f"{study.title}: {scenes}", *parts])
 
 
-def _tone(study: Study, counts: Mapping[Status, int]) -> str:
+def _tone(study: StudyRecord, counts: Mapping[Status, int]) -> str:
     if counts["rejected"] or study.failures or (study.history and study.history.worse):
         return "bad"
     return "care" if counts["inconclusive"] or not sum(counts.values()) else "good"
 
 
-def _place(row: Row) -> tuple[float, float]:
+def _place(row: StudyRow) -> tuple[float, float]:
     """Return where an estimator stands: by rank, then by efficiency; what is biased last."""
     speed = row.entry.speed
     if speed is None or speed.efficiency is None:
@@ -112,8 +112,8 @@ def _figures(scene: SceneRecord, confidence: float) -> Iterator[tuple[str, str, 
     unit = "" if scene.unit == "1" else f" [{scene.unit.replace('^2', '²')}]"
     up, time = f"root mean square error{unit}", "time of one estimate [s]"
     looks = list(dict.fromkeys((entry.kind, str(entry.options)) for entry in scene.estimators))
-    random: tuple[list[Curve], list[Curve]] = ([], [])
-    others: tuple[list[Curve], list[Curve]] = ([], [])
+    random: tuple[list[ErrorCurve], list[ErrorCurve]] = ([], [])
+    others: tuple[list[ErrorCurve], list[ErrorCurve]] = ([], [])
     for entry in scene.estimators:
         if entry.axis == "nothing":  # exact: there is no error to fall
             continue
@@ -136,14 +136,14 @@ def _figures(scene: SceneRecord, confidence: float) -> Iterator[tuple[str, str, 
             yield name, title, Convergence(across, up, tuple(curves), confidence, slope)
 
 
-def _curve(entry: Entry, look: int, effort: list[float], dashed: bool) -> list[Curve]:
+def _curve(entry: StudyEntry, look: int, effort: list[float], dashed: bool) -> list[ErrorCurve]:
     """Return the curve of an estimator over its effort, without what a logarithm cannot show; none of fewer than one point."""
     kept = [(x, c) for x, c in zip(effort, entry.counts, strict=True) if x > 0 and 0 < c.rmse < inf]
     if not kept:
         return []
     counts = [c for _, c in kept]
     return [
-        Curve(
+        ErrorCurve(
             entry.label,
             look,
             tuple(x for x, _ in kept),

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import inf
 
 from fogproof.plan import Plan
-from fogproof.reports.records.runs import Case, Run
+from fogproof.reports.records.runs import Case, RunRecord
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class Need:
     cases: tuple[Case, ...]
 
 
-def systems(run: Run) -> list[System]:
+def systems(run: RunRecord) -> list[System]:
     """Return the systems in the order of the record."""
     groups: dict[str, list[Case]] = {}
     for case in run.cases:
@@ -71,7 +71,7 @@ def systems(run: Run) -> list[System]:
     return found
 
 
-def catches(run: Run) -> list[Catch]:
+def catches(run: RunRecord) -> list[Catch]:
     """Return what rejected the broken twins, the check that rejects most of them first."""
     twins: dict[str, int] = {}
     alone: dict[str, list[Case]] = {}

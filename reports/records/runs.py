@@ -15,6 +15,7 @@ from typing import Any, Literal, TypeVar, cast
 
 from fogproof.checks.verdict import Verdict, jsonable
 from fogproof.errors import InvalidInputError, shorten
+from fogproof.input_files import read_text
 from fogproof.oracle_error import OracleError
 from fogproof.plan import Plan
 from fogproof.reports.charts.findings import parse_figure
@@ -58,7 +59,7 @@ class Case:
 
 
 @dataclass(frozen=True)
-class Run:
+class RunRecord:
     """A whole run, its cases in the order of the catalogue.
 
     asked  the names of the cases that were to run; () in records of old, where those that ran are all that is known
@@ -92,10 +93,10 @@ class Run:
         return f"Unfinished: {len(self.cases)} of {whole}" if self.missing or self.state == "interrupted" else ""
 
 
-def parse_record(record: Any, origin: str = "record") -> Run:
+def parse_record(record: Any, origin: str = "record") -> RunRecord:
     """Return the record as dataclasses; `origin` is where it came from, for the message of an `InvalidInputError`."""
     check_schema(record, origin)
-    run = validated(Run, record, origin)
+    run = validated(RunRecord, record, origin)
     names: set[str] = set()
     for number, case in enumerate(run.cases):
         if case.name in names:
@@ -135,18 +136,14 @@ def validated(kind: type[T], record: Any, origin: str) -> T:
 def load_record(folder: str | Path) -> dict[str, Any]:
     """Return what stands in `folder/results.json`, or say in an `InvalidInputError` why that is nothing."""
     path = Path(folder) / RESULTS
-    try:
-        text = path.read_text(encoding="utf-8")
-    except FileNotFoundError:
+    if not path.exists():
         there = "the folder has no" if Path(folder).is_dir() else f"there is no folder {folder} with a"
         make = f"'fogproof verify --report {folder}' or 'fogproof study STUDY.toml -o {folder}'"
-        raise InvalidInputError(f"cannot read {path}: {there} {RESULTS}; {make} make one", str(path)) from None
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
-        raise InvalidInputError(f"cannot read {path}: {reason}", str(path)) from None
+        raise InvalidInputError(f"cannot read {path}: {there} {RESULTS}; {make} make one", str(path))
+    text = read_text(path, "the record")
     try:
         record = json.loads(text)
-    except (json.JSONDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:
         ends = isinstance(error, json.JSONDecodeError) and error.pos >= len(text.rstrip())
         reason = "it ends in the middle of a record" if ends else f"it is not JSON ({error})"
         raise InvalidInputError(f"cannot read {path}: {reason}; run the checks again", str(path)) from None
@@ -172,7 +169,7 @@ def _lines(record: dict[str, Any]) -> str:
     return "{\n" + ",\n".join(lines) + "\n}\n"
 
 
-def write_csv(run: Run, folder: str | Path) -> Path:
+def write_csv(run: RunRecord, folder: str | Path) -> Path:
     """Write `folder/results.csv`, one row a case, and return its path.
 
     No text in it can be taken for a formula, see `spreadsheet_cell`.
@@ -185,7 +182,7 @@ def write_csv(run: Run, folder: str | Path) -> Path:
     return write_file(Path(folder) / "results.csv", out.getvalue())
 
 
-def _row(case: Case, run: Run) -> dict[str, Any]:
+def _row(case: Case, run: RunRecord) -> dict[str, Any]:
     verdict, resolution = case.verdict, case.verdict.resolution if case.verdict is not None else None
     twin, plan = case.twin_result, case.plan
     rejecting = (

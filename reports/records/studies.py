@@ -8,11 +8,11 @@ from typing import Any, Literal
 from fogproof.checks.verdict import Finding, Verdict
 from fogproof.errors import InvalidInputError, shorten
 from fogproof.plan import Plan
-from fogproof.reports.records.runs import Case, Run, validated
+from fogproof.reports.records.runs import Case, RunRecord, validated
 
 
 @dataclass(frozen=True)
-class Estimate:
+class EstimateRecord:
     """A value and the interval, at the study's confidence, that holds the truth."""
 
     value: float
@@ -21,17 +21,17 @@ class Estimate:
 
 
 @dataclass(frozen=True)
-class Slope(Estimate):
+class Slope(EstimateRecord):
     """The power of the number of samples with which the error falls; `expected` is -0.5 for random points."""
 
     expected: float | None = None
 
 
 @dataclass(frozen=True)
-class March:
+class MarchRecord:
     """How a marched estimate nears the reference: |error| ~ steps^-order, down to `floor` at `at` steps."""
 
-    order: Estimate | None
+    order: EstimateRecord | None
     floor: float
     at: int
     reached: bool
@@ -74,7 +74,7 @@ class Timing:
 
 
 @dataclass(frozen=True)
-class Target:
+class TargetRecord:
     """What a relative error takes; None if it is never reached, and `how` says why."""
 
     error: float
@@ -87,20 +87,20 @@ class Target:
 class Speed:
     """Time, and what it buys: efficiency = 1 / (mean squared error x time), relative to the scene's best random estimator."""
 
-    cpu: Estimate
+    cpu: EstimateRecord
     wall: float
     batches: int
     cpu_total: float
     counts: tuple[Timing, ...]
-    targets: tuple[Target, ...]
+    targets: tuple[TargetRecord, ...]
     efficiency: float | None = None
-    relative: Estimate | None = None
+    relative: EstimateRecord | None = None
     rank: int | None = None
-    gain: Estimate | None = None
+    gain: EstimateRecord | None = None
 
 
 @dataclass(frozen=True)
-class Entry:
+class StudyEntry:
     """One estimator of a scene."""
 
     name: str
@@ -118,10 +118,10 @@ class Entry:
     reason: str = ""
     warning: str = ""
     options: dict[str, Any] = field(default_factory=dict)
-    bias: Estimate | None = None
+    bias: EstimateRecord | None = None
     variance: Variance | None = None
     slope: Slope | None = None
-    march: March | None = None
+    march: MarchRecord | None = None
     cost: float | None = None
     speed: Speed | None = None
 
@@ -160,7 +160,7 @@ class SceneRecord:
     described: dict[str, Any]
     reference: Truth
     answer: Answer
-    estimators: tuple[Entry, ...]
+    estimators: tuple[StudyEntry, ...]
     plan: Plan | None = None
 
 
@@ -171,8 +171,8 @@ class Change:
     scene: str
     estimator: str
     became: tuple[str, ...]
-    time: Estimate | None = None
-    variance: Estimate | None = None
+    time: EstimateRecord | None = None
+    variance: EstimateRecord | None = None
 
 
 @dataclass(frozen=True)
@@ -191,7 +191,7 @@ class History:
 
 
 @dataclass(frozen=True)
-class Study:
+class StudyRecord:
     """A whole study."""
 
     title: str
@@ -219,9 +219,9 @@ class Study:
     state: Literal["finished", "interrupted"] = "finished"
 
 
-def parse_study(record: dict[str, Any], origin: str = "record") -> Study:
+def parse_study(record: dict[str, Any], origin: str = "record") -> StudyRecord:
     """Return the record of a study as dataclasses; a fault is an `InvalidInputError` that names its place."""
-    study = validated(Study, record, origin)
+    study = validated(StudyRecord, record, origin)
     names: set[tuple[str, str]] = set()
     for scene in study.scenes:
         for entry in scene.estimators:
@@ -236,10 +236,10 @@ def parse_study(record: dict[str, Any], origin: str = "record") -> Study:
     return study
 
 
-def as_run(study: Study) -> Run:
+def as_run(study: StudyRecord) -> RunRecord:
     """Return the bias gate of a study as a run: each estimator in its scene is a case."""
     cases = [_case(study, scene, entry) for scene in study.scenes for entry in scene.estimators]
-    return Run(
+    return RunRecord(
         schema="fogproof/results/1",
         kind="study",
         fogproof=study.fogproof,
@@ -255,7 +255,7 @@ def as_run(study: Study) -> Run:
     )
 
 
-def _case(study: Study, scene: SceneRecord, entry: Entry) -> Case:
+def _case(study: StudyRecord, scene: SceneRecord, entry: StudyEntry) -> Case:
     reference = scene.reference
     case = Case(
         name=f"{scene.name} / {entry.name}",

@@ -1,6 +1,7 @@
 """fogproof proves Monte Carlo volume estimators right or wrong.
 
-The two calls every user meets first are `check_sampler` and `check_estimator`; the oracle is `fogproof.analytic`.
+The two calls every user meets first are `check_sampler` and `check_estimator`; the oracle is `fogproof.analytic`. `Ball` and `Box`
+are domains here; the shapes of that name, which hold a medium, are in `fogproof.scene`.
 Importing this package loads NumPy alone; everything heavier loads where it is used.
 """
 
@@ -14,8 +15,10 @@ from fogproof.domains import (
     Ball,
     Box,
     Discrete,
+    Domain,
     HalfLine,
     Interval,
+    Law,
     Product,
     RealLine,
     Rectangle,
@@ -28,12 +31,30 @@ from fogproof.domains import (
     UnitSphere,
     UnitSquare,
 )
-from fogproof.errors import FogproofError, InvalidValueError
-from fogproof.scene import HenyeyGreenstein, Isotropic, Medium, PointLight, Ray, Rayleigh, Scene
+from fogproof.errors import FogproofError, InvalidValueError, UnsupportedError
+from fogproof.scene import lights as _lights
+from fogproof.scene import media as _media
+from fogproof.scene import occluders as _occluders
+from fogproof.scene import phase as _phase
+from fogproof.scene import surfaces as _surfaces
+from fogproof.scene.lights import *  # noqa: F403
+from fogproof.scene.media import *  # noqa: F403
+from fogproof.scene.occluders import *  # noqa: F403
+from fogproof.scene.phase import *  # noqa: F403
+from fogproof.scene.rays import Ray
+from fogproof.scene.scenes import Scattering, Scene
+from fogproof.scene.shapes import HalfSpace, Shape, Slab, Unbounded
+from fogproof.scene.surfaces import *  # noqa: F403
 
 if TYPE_CHECKING:
     from fogproof.checks import (
+        EffectInterval,
         Finding,
+        InconclusiveError,
+        Outcome,
+        RejectedError,
+        Resolution,
+        SamplerCheck,
         Verdict,
         check_bound,
         check_convergence,
@@ -44,6 +65,7 @@ if TYPE_CHECKING:
         check_sampler,
         check_streams,
         compare_estimators,
+        fresh_seed,
         samples_for,
     )
     from fogproof.runs import Run
@@ -57,35 +79,44 @@ __all__ = [
     "Ball",
     "Box",
     "Discrete",
+    "Domain",
     "Draw",
     "Draws",
+    "EffectInterval",
     "Estimator",
     "Finding",
     "FogproofError",
     "HalfLine",
-    "HenyeyGreenstein",
+    "HalfSpace",
+    "InconclusiveError",
     "Interval",
     "InvalidValueError",
-    "Isotropic",
-    "Medium",
-    "PointLight",
+    "Law",
+    "Outcome",
     "Product",
     "Ray",
-    "Rayleigh",
     "RealLine",
     "Rectangle",
     "Reference",
+    "RejectedError",
+    "Resolution",
     "Rotations",
     "Run",
     "Sampler",
+    "SamplerCheck",
+    "Scattering",
     "Scene",
+    "Shape",
+    "Slab",
     "SpherePart",
     "SphericalTriangle",
     "Triangle",
+    "Unbounded",
     "UnitDisk",
     "UnitHemisphere",
     "UnitSphere",
     "UnitSquare",
+    "UnsupportedError",
     "Verdict",
     "check_bound",
     "check_convergence",
@@ -97,24 +128,37 @@ __all__ = [
     "check_streams",
     "compare_estimators",
     "estimator_for",
+    "fresh_seed",
     "read_scene",
     "read_voxel_grid",
     "samples_for",
 ]
+__all__ += _lights.__all__
+__all__ += _media.__all__
+__all__ += _occluders.__all__
+__all__ += _phase.__all__
+__all__ += _surfaces.__all__
 
 _LAZY = {
-    "check_sampler": "fogproof.checks",
-    "check_estimator": "fogproof.checks",
-    "check_family": "fogproof.checks",
-    "compare_estimators": "fogproof.checks",
+    "EffectInterval": "fogproof.checks",
+    "Finding": "fogproof.checks",
+    "InconclusiveError": "fogproof.checks",
+    "Outcome": "fogproof.checks",
+    "RejectedError": "fogproof.checks",
+    "Resolution": "fogproof.checks",
+    "SamplerCheck": "fogproof.checks",
+    "Verdict": "fogproof.checks",
     "check_bound": "fogproof.checks",
     "check_convergence": "fogproof.checks",
+    "check_estimator": "fogproof.checks",
+    "check_family": "fogproof.checks",
     "check_mis": "fogproof.checks",
     "check_reciprocity": "fogproof.checks",
+    "check_sampler": "fogproof.checks",
     "check_streams": "fogproof.checks",
+    "compare_estimators": "fogproof.checks",
+    "fresh_seed": "fogproof.checks",
     "samples_for": "fogproof.checks",
-    "Verdict": "fogproof.checks",
-    "Finding": "fogproof.checks",
     "Run": "fogproof.runs",
     "estimator_for": "fogproof.scene_estimator",
     "read_scene": "fogproof.scene.files",

@@ -23,7 +23,7 @@ from fogproof import (
     UnitSquare,
     check_sampler,
 )
-from fogproof.checks.mixture import Mixture
+from fogproof.checks.mixture import MixtureTest
 from fogproof.checks.statistics import labels
 from fogproof.checks.statistics.labels import Sums
 from fogproof.checks.subject import Subject
@@ -372,7 +372,7 @@ def _mixed(factor, batches, size):
     subject = Subject(sample, lambda x: factor * pdf(x), UnitSphere(), 2)
     rng = np.random.default_rng()
     points = sample(rng.random((1 << 14, 2)))
-    mixture = Mixture.of(subject, UnitSphere().law(points), points, int(rng.integers(1 << 60)), 1 << 60)
+    mixture = MixtureTest.of(subject, UnitSphere().law(points), points, int(rng.integers(1 << 60)), 1 << 60)
     found = []
     for index in range(batches):
         x = sample(rng.random((size, 2)))

@@ -8,7 +8,7 @@ from click.testing import CliRunner
 
 from fogproof import verify
 from fogproof.catalogue import SamplerCase, own
-from fogproof.cli.main import cli
+from fogproof.cli.commands import cli
 from fogproof.errors import FogproofError, InvalidInputError
 
 HEAD = """

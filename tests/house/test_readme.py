@@ -10,7 +10,7 @@ import pytest
 from fogproof import verify
 from fogproof.catalogue import all_cases
 from fogproof.checks import RejectedError
-from fogproof.cli.main import _COMMANDS
+from fogproof.cli.commands import _COMMANDS
 from fogproof.plan import plan
 from fogproof.scene.files import read_scene
 

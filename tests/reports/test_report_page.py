@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from report_records import HOSTILE, Page, bins_figure, case, mean_figure, record, typical, verdict, z_figure
 
-from fogproof.checks.verdict import Finding, Interval, Resolution, Verdict, jsonable
+from fogproof.checks.verdict import EffectInterval, Finding, Resolution, Verdict, jsonable
 from fogproof.reports import write_report
 from fogproof.reports.charts.findings import parse_figure
 from fogproof.reports.charts.p_values import PValueHistogram, PValues
@@ -219,7 +219,7 @@ def test_cause_place_and_size_of_a_misfit_are_told(tmp_path):
     finding = (
         Finding("c", "rejected", "m", 1e-9, 0.1, effect=0.5).located("mu below 0: too many").because("wrong measure")
     )
-    finding = replace(finding, interval=Interval(0.4, 0.6, 0.99))
+    finding = replace(finding, interval=EffectInterval(0.4, 0.6, 0.99))
     one = case("a", "rejected") | {
         "verdict": Verdict((finding,), 1e-6, 10, 1, cause="wrong measure", reproduce="f(1)").to_dict()
     }

@@ -12,7 +12,7 @@ from report_records import HOSTILE, Page, case, entry, record, study
 
 from fogproof.errors import InvalidInputError
 from fogproof.reports import compare_exit_code, write_comparison, write_report
-from fogproof.reports.charts.convergence import Convergence, Curve
+from fogproof.reports.charts.convergence import Convergence, ErrorCurve
 from fogproof.reports.charts.pictures import render
 from fogproof.reports.pages.study import headline
 from fogproof.reports.records.studies import as_run, parse_study
@@ -172,7 +172,7 @@ def test_a_study_and_a_verification_can_be_told_apart(tmp_path):
 
 
 def test_errors_of_many_magnitudes_stay_inside_the_figure():
-    curve = Curve(
+    curve = ErrorCurve(
         "a", 0, (1.0, 10.0, 100.0), (1.0, 1e-9, 1e-18), (0.5, 0.0, 0.0), (2.0, float("inf"), 1e-17), (float("nan"),) * 3
     )
     picture = render(Convergence("samples", "error", (curve,), 0.99), "c", (560, 400))

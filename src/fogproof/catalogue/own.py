@@ -54,7 +54,7 @@ def own_cases(origin: str) -> tuple[Case, ...]:
     except InvalidInputError:
         raise
     except (Exception, SystemExit) as error:
-        raise InvalidInputError(f"{origin}: {_told(error, origin)}", origin) from None
+        raise InvalidInputError(f"{origin}: {_explained(error, origin)}", origin) from None
     if not made:
         raise InvalidInputError(f"{origin}: cases() returned none", origin)
     seen: dict[str, Case] = {}
@@ -97,7 +97,7 @@ def _function(found: Any, origin: str) -> Callable[[], Any]:
     return named
 
 
-def _told(error: BaseException, origin: str) -> str:
+def _explained(error: BaseException, origin: str) -> str:
     """Return what went wrong in somebody else's file, with the line of it, on one line."""
     if isinstance(error, SyntaxError):
         return f"line {error.lineno}: {error.msg}"

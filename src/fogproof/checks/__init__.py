@@ -15,9 +15,9 @@ from fogproof.checks.streams import batch_generator, batch_sizes, fresh_seed
 from fogproof.checks.subject import Subject
 from fogproof.checks.tally import Tally
 from fogproof.checks.verdict import (
+    EffectInterval,
     Finding,
     InconclusiveError,
-    Interval,
     Outcome,
     RejectedError,
     Resolution,
@@ -26,9 +26,9 @@ from fogproof.checks.verdict import (
 )
 
 __all__ = [
+    "EffectInterval",
     "Finding",
     "InconclusiveError",
-    "Interval",
     "Outcome",
     "RejectedError",
     "Resolution",

@@ -43,16 +43,7 @@ def declared(
     number("alpha", alpha, f"must lie in [{_LEAST_ALPHA:g}, 1)", _LEAST_ALPHA, np.nextafter(1, 0))
     if resolution is not None:
         number("resolution", resolution, "must lie in (0, 1)", 0, 1, open_ends=True)
-    if subject.atoms and isinstance(subject.domain, Discrete):
-        raise InvalidValueError("atoms", "need a density: on Discrete the pdf is a probability", subject.domain)
-    for point in subject.atoms:
-        if np.shape(point) != subject.domain.shape:
-            raise InvalidValueError("atoms", f"must be points of {subject.domain}", point)
-    _probabilities("atoms", subject.atoms)
-    _probabilities("events", subject.events)
-    events = sum(subject.events.values())
-    if subject.events and abs(events - 1) > 1e-9:
-        raise InvalidValueError("events", "must have probabilities that sum to 1", events, "declare every label")
+    _check_atoms_and_events(subject)
     axis = subject.axis
     if axis is not None:
         axis = tuple(unit_vectors("axis", axis).tolist())
@@ -65,6 +56,19 @@ def declared(
         whole("samples", samples, 100),
         fresh_seed() if seed is None else whole("seed", seed, 0, "any whole number >= 0, or None for a fresh one"),
     )
+
+
+def _check_atoms_and_events(subject: Subject) -> None:
+    if subject.atoms and isinstance(subject.domain, Discrete):
+        raise InvalidValueError("atoms", "need a density: on Discrete the pdf is a probability", subject.domain)
+    for point in subject.atoms:
+        if np.shape(point) != subject.domain.shape:
+            raise InvalidValueError("atoms", f"must be points of {subject.domain}", point)
+    _probabilities("atoms", subject.atoms)
+    _probabilities("events", subject.events)
+    events = sum(subject.events.values())
+    if subject.events and abs(events - 1) > 1e-9:
+        raise InvalidValueError("events", "must have probabilities that sum to 1", events, "declare every label")
 
 
 def whole(name: str, value: Any, least: int, fix: str = "") -> int:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from fogproof.checks.density.grid import Marginal, Plane
+from fogproof.checks.density.grid import GridPlane, Marginal
 from fogproof.checks.verdict import jsonable
 
 _BINS = 64
@@ -25,7 +25,7 @@ def bins_figure(marginal: Marginal, counts: np.ndarray) -> dict[str, Any]:
     return jsonable({**figure, "z": np.round(z, 2)})
 
 
-def z_map_figure(marginals: tuple[Marginal, Marginal], plane: Plane, counts: np.ndarray) -> dict[str, Any]:
+def z_map_figure(marginals: tuple[Marginal, Marginal], plane: GridPlane, counts: np.ndarray) -> dict[str, Any]:
     """Return (observed - expected) / sigma of the coarse cells of a plane, counts (32, 32)."""
     n = counts.sum()
     expected = n * plane.mass

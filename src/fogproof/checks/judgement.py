@@ -10,12 +10,12 @@ import numpy as np
 
 from fogproof.checks.escalation import EARLY
 from fogproof.checks.observed import Observed
-from fogproof.checks.quantities import Quantity
+from fogproof.checks.quantities import CheckedQuantity
 from fogproof.checks.statistics.bets import Bets
 from fogproof.checks.statistics.coverage import coverage_test
 from fogproof.checks.statistics.dependence import repeated_stretches, repeats_within_calls, runs_test, spread_of_calls
 from fogproof.checks.statistics.goodness import MISS
-from fogproof.checks.statistics.heavy import Tail
+from fogproof.checks.statistics.heavy import TailEstimate
 from fogproof.checks.statistics.known import Known
 from fogproof.checks.statistics.light import light_tailed_p
 from fogproof.checks.statistics.means import DOUBT, LAWLESS, mean_test, trusted, unseen_size
@@ -88,7 +88,7 @@ def judged(seen: Observed, again: Again, samples: int, alpha: float, complete: b
 class _Claim:
     """One quantity in one channel, what was seen of it, and its share of alpha."""
 
-    quantity: Quantity
+    quantity: CheckedQuantity
     channel: int
     name: str
     data: Moments
@@ -178,7 +178,7 @@ class _Claim:
     def _second_look(self, finding: Finding, again: Again, complete: bool) -> Finding:
         alpha, known = _SECOND * self.share, self.known
         bets = Bets(self.value - self.error, self.value + self.error, known, self.samples, alpha)
-        tail = Tail(self.value)
+        tail = TailEstimate(self.value)
         for draws, _ in again():
             x = np.ascontiguousarray(self.quantity.numbers(draws)[:, self.channel])
             bets, tail = bets.after(x) if bets.possible else bets, tail.after(x)
@@ -225,7 +225,7 @@ class _Claim:
         return finding.lawless or self._absurd()
 
 
-def without_variance(quantities: list[Quantity]) -> set[int]:
+def without_variance(quantities: list[CheckedQuantity]) -> set[int]:
     """Return the channels that declare no variance."""
     variance = next((q.value for q in quantities if q.name == "variance"), np.empty(0))
     return {channel for channel, v in enumerate(variance) if v == 0}

@@ -33,7 +33,7 @@ _SIX = 6.0  # standard deviations
 
 
 @dataclass(frozen=True)
-class Mixture:
+class MixtureTest:
     """The known law of one subject.
 
     tree     in the coordinates of the domain's law
@@ -50,14 +50,14 @@ class Mixture:
     rounded: bool
 
     @staticmethod
-    def of(subject: Subject, law: Law, points: np.ndarray, seed: int, most: int) -> Mixture:
+    def of(subject: Subject, law: Law, points: np.ndarray, seed: int, most: int) -> MixtureTest:
         """Return the mixture that follows pilot points (n, ...) of the domain."""
         rng = batch_generator(seed, "labels", 0, 0)
         u = law.coordinates(points, rng.random((len(points), len(law.axes))))
         rounded = len(points) > 0 and not law.stepped and bool(_moved(subject, points[:_CHECKED]).any())
-        return Mixture(subject, law, Tree.of(u, _PER_LEAF), seed, most, rounded)
+        return MixtureTest(subject, law, Tree.of(u, _PER_LEAF), seed, most, rounded)
 
-    def wider(self, points: np.ndarray) -> Mixture:
+    def wider(self, points: np.ndarray) -> MixtureTest:
         """Return the mixture that also follows the pdf where it is high and no pilot point was: evenly spread points find it."""
         rng = batch_generator(self.seed, "labels", 0, 1)
         k = len(self.law.axes)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from fogproof.checks.quantities import Quantity, column
+from fogproof.checks.quantities import CheckedQuantity, column
 from fogproof.checks.statistics.coverage import Coverage
 from fogproof.checks.statistics.dependence import Succession
 from fogproof.checks.statistics.moments import Moments
@@ -32,7 +32,7 @@ class Observed:
     n, bad      how many realisations, and how many that are not finite
     """
 
-    quantities: list[Quantity]
+    quantities: list[CheckedQuantity]
     moments: tuple[tuple[Moments, ...], ...]
     succession: Succession
     coverage: Coverage = field(default_factory=Coverage)
@@ -43,7 +43,7 @@ class Observed:
     bad: int = 0
 
     @staticmethod
-    def of(quantities: list[Quantity], first: Draws, labels: frozenset[int] | None = None) -> Observed:
+    def of(quantities: list[CheckedQuantity], first: Draws, labels: frozenset[int] | None = None) -> Observed:
         """Return the empty record of an estimator whose first batch is given."""
         empty = tuple(tuple(Moments() for _ in q.value) for q in quantities)
         finite = first.value[np.isfinite(first.value).all(axis=1)]

@@ -19,7 +19,7 @@ from fogproof.checks.density.model import looked_at, looked_at_plane
 from fogproof.checks.edges import edge_uniforms, no_edge_uniforms
 from fogproof.checks.given_cdf import agreement, continuous_cdf, rosenblatt
 from fogproof.checks.jacobian import jacobian_agreement
-from fogproof.checks.mixture import Mixture
+from fogproof.checks.mixture import MixtureTest
 from fogproof.checks.normalisation import FLOOR, albedo, mean_cosine, normalisation
 from fogproof.checks.probes import precision_agreement, reference_agreement
 from fogproof.checks.promises import inside, usual_labels
@@ -202,7 +202,7 @@ def _prepared(subject: Subject, samples: int, seed: int) -> Prepared:
             findings.append(jacobian_agreement(subject, pilot.points))
     if len(claim.chart.axes) > 1 and (subject.cdf is not None or not _independent(grid)):
         law = subject.domain.law(pilot.points)
-        mixture = Mixture.of(subject, law, pilot.points, seed, 1)
+        mixture = MixtureTest.of(subject, law, pilot.points, seed, 1)
     counter = _counter(subject, grid, count, ranges, pilot, mixture)
     return Prepared(subject, samples, pilot, claim, counter, tuple(findings), True)
 
@@ -229,7 +229,7 @@ def _by_labels(
     if wanted > PILOT:
         points = np.concatenate([points, _pilot(subject, seed, 1, wanted - PILOT).points])
     law = subject.domain.law(points)
-    mixture = Mixture.of(subject, law, points, seed, samples).wider(points)
+    mixture = MixtureTest.of(subject, law, points, seed, samples).wider(points)
     halves = np.full((1, len(law.axes)), 0.5)
     if subject.axis is not None and subject.mean_cosine is not None:
         findings.append(sampled_integrals.mean_cosine(mixture))
@@ -259,7 +259,7 @@ def _counter(
     count: Callable[[np.ndarray], tuple[np.ndarray, ...]],
     ranges: Ranges | None,
     pilot: Pilot,
-    mixture: Mixture | None,
+    mixture: MixtureTest | None,
 ) -> Counter:
     table = isinstance(subject.domain, Discrete)
     scores = tuple(in_units(m.scores) for m in (grid.marginals[:1] if table else grid.marginals))

@@ -15,7 +15,7 @@ from fogproof.validate import require
 
 
 @dataclass(frozen=True)
-class Quantity:
+class CheckedQuantity:
     """One expectation, channel by channel.
 
     name     what it is called
@@ -66,7 +66,7 @@ class Declared:
 
 def quantities_of(
     reference: Reference | float | Mapping[int, Reference | float], declared: Declared, stderr: np.ndarray | None
-) -> list[Quantity]:
+) -> list[CheckedQuantity]:
     """Return all that is known of an estimator, the means of its values first; `stderr` are the first it reports, if any."""
     cost = _cost(declared)
     if isinstance(reference, Mapping):
@@ -94,13 +94,15 @@ def quantities_of(
         v_error = v_error + error**2 + (8 * declared.roundoff * v if declared.roundoff > 2.0**-53 else 0.0)
         largest = np.maximum((high - value) ** 2, (value - low) ** 2)
         squares = tuple(Known(low=0.0, high=float(one), light=declared.light) for one in largest)
-        more.append(Quantity("variance", lambda d: _squared(d.value - value), v, v_error, "wrong variance", squares))
+        more.append(
+            CheckedQuantity("variance", lambda d: _squared(d.value - value), v, v_error, "wrong variance", squares)
+        )
     if stderr is not None:
         unit = _unit(stderr)
         zero = np.zeros_like(value)
         name, cause = "square of the error less that of the standard error", "wrong standard errors"
         more.append(
-            Quantity(
+            CheckedQuantity(
                 name,
                 lambda d: _squared((d.value - value) / unit) - _squared(column(d.stderr) / unit),
                 zero,
@@ -108,10 +110,10 @@ def quantities_of(
                 cause,
             )
         )
-    return [Quantity("mean", lambda d: d.value, value, error, "bias", tuple(known)), *more, *cost]
+    return [CheckedQuantity("mean", lambda d: d.value, value, error, "bias", tuple(known)), *more, *cost]
 
 
-def _order(label: int, reference: Reference | float, declared: Declared) -> Quantity:
+def _order(label: int, reference: Reference | float, declared: Declared) -> CheckedQuantity:
     value, error = _exact("reference", reference, None)
     low, high = declared.bounds
     known = tuple(Known(None, min(low, 0.0), max(high, 0.0), declared.light) for _ in value)
@@ -121,10 +123,10 @@ def _order(label: int, reference: Reference | float, declared: Declared) -> Quan
             raise SubjectError("draw must return Draws with an order when references by order are given", "draw: order")
         return np.where(column(d.order) == label, d.value, 0.0)
 
-    return Quantity(f"mean of order {label}", numbers, value, declared.widened(value, error), "bias", known)
+    return CheckedQuantity(f"mean of order {label}", numbers, value, declared.widened(value, error), "bias", known)
 
 
-def _cost(declared: Declared) -> list[Quantity]:
+def _cost(declared: Declared) -> list[CheckedQuantity]:
     if declared.cost is None:
         return []
 
@@ -134,7 +136,7 @@ def _cost(declared: Declared) -> list[Quantity]:
         return column(d.cost)
 
     value, error = _exact("cost", declared.cost, 1)
-    return [Quantity("cost", numbers, value, error, "wrong cost", (Known(low=0.0),), tame=True)]
+    return [CheckedQuantity("cost", numbers, value, error, "wrong cost", (Known(low=0.0),), tame=True)]
 
 
 def _exact(name: str, reference: Reference | float, channels: int | None) -> tuple[np.ndarray, np.ndarray]:

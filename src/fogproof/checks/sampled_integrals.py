@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fogproof.checks.mixture import Mixture
+from fogproof.checks.mixture import MixtureTest
 from fogproof.checks.statistics.goodness import MISS
 from fogproof.checks.statistics.tails import normal_quantile
 from fogproof.checks.streams import batch_generator
@@ -18,7 +18,7 @@ _POINTS = 1 << 18
 _BEYOND_DOUBT = 8.0  # standard errors: a false alarm has probability 1e-15
 
 
-def mean_cosine(mixture: Mixture) -> Finding:
+def mean_cosine(mixture: MixtureTest) -> Finding:
     """The mean of x . axis under the pdf must be the declared one."""
     subject = mixture.subject
     assert subject.mean_cosine is not None
@@ -27,7 +27,7 @@ def mean_cosine(mixture: Mixture) -> Finding:
     return finding.because("sign convention") if finding.outcome == "rejected" else finding
 
 
-def albedo(mixture: Mixture) -> list[Finding]:
+def albedo(mixture: MixtureTest) -> list[Finding]:
     """The integral of `eval` over the domain must be the declared albedo, channel by channel."""
     subject = mixture.subject
     claims = np.atleast_1d(np.asarray(subject.albedo, dtype=float))
@@ -46,7 +46,7 @@ def albedo(mixture: Mixture) -> list[Finding]:
     return findings
 
 
-def _estimated(name: str, mixture: Mixture, f: Callable[[np.ndarray], np.ndarray], claim: float) -> Finding:
+def _estimated(name: str, mixture: MixtureTest, f: Callable[[np.ndarray], np.ndarray], claim: float) -> Finding:
     x, q = mixture.known(batch_generator(mixture.seed, name, 0, 0), _POINTS)
     with np.errstate(all="ignore"):
         values = f(x) / q

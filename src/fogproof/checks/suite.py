@@ -12,7 +12,7 @@ from fogproof.checks.call_sizes import one_law
 from fogproof.checks.density.grid import Grid
 from fogproof.checks.escalation import Test
 from fogproof.checks.few_values import few_values, few_values_axes
-from fogproof.checks.mixture import Mixture
+from fogproof.checks.mixture import MixtureTest
 from fogproof.checks.normalisation import FLOOR
 from fogproof.checks.prepared import Prepared
 from fogproof.checks.statistics import labels
@@ -113,7 +113,7 @@ def _add_cells(add: Callable[..., None], grid: Grid, tally: Tally) -> None:
             add("fine joint", chi_square_sparse, "chi-square, fine joint", *fine)
 
 
-def _add_labels(add: Callable[..., None], mixture: Mixture, tally: Tally) -> None:
+def _add_labels(add: Callable[..., None], mixture: MixtureTest, tally: Tally) -> None:
     """Add the label tests: under the one or both conventions on samples that are given up."""
     sums = tally.labels or (mixture.nothing(), mixture.nothing())
     conventions = sums if tally.given_up else sums[:1]

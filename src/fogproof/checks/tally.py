@@ -15,7 +15,7 @@ import numpy as np
 
 from fogproof.checks.density.features import Ranges, kept
 from fogproof.checks.density.grid import Grid
-from fogproof.checks.mixture import Mixture
+from fogproof.checks.mixture import MixtureTest
 from fogproof.checks.promises import Watch
 from fogproof.checks.statistics.labels import Sums
 from fogproof.checks.statistics.moments import Moments
@@ -167,7 +167,7 @@ class Counter:
     labels: dict[Any, int]
     scores: tuple[np.ndarray, ...]
     fingerprinted: bool
-    mixture: Mixture | None = None
+    mixture: MixtureTest | None = None
 
     def empty(self) -> Tally:
         """Return the tally of no samples."""

@@ -46,7 +46,7 @@ class Resolution:
 
 
 @dataclass(frozen=True)
-class Interval:
+class EffectInterval:
     """Where the true effect lies, but for a probability 1 - confidence."""
 
     low: float
@@ -87,7 +87,7 @@ class Finding:
     effect: float | None = None
     resolution: Resolution | None = None
     figure: dict[str, Any] | None = None
-    interval: Interval | None = None
+    interval: EffectInterval | None = None
     region: tuple[str, ...] = ()
     cause: str = ""
     lawless: bool = False

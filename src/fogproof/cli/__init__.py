@@ -3,6 +3,6 @@
 Exit codes: 0 every outcome as expected, 1 something rejected, 3 nothing rejected but something inconclusive, 2 usage or bad input.
 """
 
-from fogproof.cli.main import main
+from fogproof.cli.commands import main
 
 __all__ = ["main"]

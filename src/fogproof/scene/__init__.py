@@ -1,50 +1,24 @@
 """Scenes as plain frozen data that validate themselves. No formula lives here."""
 
+from fogproof.scene import lights as _lights
+from fogproof.scene import media as _media
+from fogproof.scene import occluders as _occluders
 from fogproof.scene import phase as _phase
-from fogproof.scene.lights import DirectionalLight, Environment, Light, PointLight, SpotLight
-from fogproof.scene.media import (
-    AnisotropicMedium,
-    AnyMedium,
-    ExponentialMedium,
-    LinearMedium,
-    Medium,
-    OpenGLFog,
-    PiecewiseConstantMedium,
-    Procedural,
-    VoxelGrid,
-)
-from fogproof.scene.occluders import Disk, Occluder, Sphere
+from fogproof.scene import shapes as _shapes
+from fogproof.scene import surfaces as _surfaces
+from fogproof.scene.lights import *  # noqa: F403
+from fogproof.scene.media import *  # noqa: F403
+from fogproof.scene.occluders import *  # noqa: F403
 from fogproof.scene.phase import *  # noqa: F403
 from fogproof.scene.rays import Ray
 from fogproof.scene.scenes import Scattering, Scene
-from fogproof.scene.shapes import Ball, Box, HalfSpace, Shape, Slab, Unbounded
+from fogproof.scene.shapes import *  # noqa: F403
+from fogproof.scene.surfaces import *  # noqa: F403
 
-__all__ = [
-    "AnisotropicMedium",
-    "AnyMedium",
-    "Ball",
-    "Box",
-    "DirectionalLight",
-    "Disk",
-    "Environment",
-    "ExponentialMedium",
-    "HalfSpace",
-    "Light",
-    "LinearMedium",
-    "Medium",
-    "Occluder",
-    "OpenGLFog",
-    "PiecewiseConstantMedium",
-    "PointLight",
-    "Procedural",
-    "Ray",
-    "Scattering",
-    "Scene",
-    "Shape",
-    "Slab",
-    "Sphere",
-    "SpotLight",
-    "Unbounded",
-    "VoxelGrid",
-]
+__all__ = ["Ray", "Scattering", "Scene"]
+__all__ += _lights.__all__
+__all__ += _media.__all__
+__all__ += _occluders.__all__
 __all__ += _phase.__all__
+__all__ += _shapes.__all__
+__all__ += _surfaces.__all__

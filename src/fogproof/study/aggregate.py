@@ -15,7 +15,7 @@ import numpy as np
 from fogproof.checks.statistics.moments import Moments
 from fogproof.study.batches import COLUMNS, TAIL_SHARE
 from fogproof.study.cells import Cell
-from fogproof.study.plan import Batches, Stretch
+from fogproof.study.plan import Batches, BatchStretch
 from fogproof.study.stored_batches import Row
 
 _N, _MEAN, _M2, _M3, _M4, _LOW, _HIGH, _AT_LOW, _AT_HIGH, _BAD = range(len(COLUMNS))
@@ -91,7 +91,7 @@ class _Handful:
     tails_known: bool
 
 
-def _level(own: Iterator[Row], stretch: Stretch) -> Level:
+def _level(own: Iterator[Row], stretch: BatchStretch) -> Level:
     """Return the level that some rows belong to; a few at a time, because there may be very many."""
     parts: list[_Handful] = []
     while group := list(islice(own, _AT_ONCE)):
@@ -120,7 +120,7 @@ def _level(own: Iterator[Row], stretch: Stretch) -> Level:
     )
 
 
-def _handful(group: list[Row], stretch: Stretch) -> _Handful:
+def _handful(group: list[Row], stretch: BatchStretch) -> _Handful:
     pieces = stretch.pieces(np.array([row[0] for row in group]))
     table = np.frombuffer(b"".join(row[1] for row in group)).reshape(-1, len(COLUMNS))
     sizes = pieces.replicates

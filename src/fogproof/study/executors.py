@@ -106,7 +106,7 @@ def _dask(address: str) -> Iterator[Workers]:
     except ImportError:
         raise NotInstalledError("Dask", "dask") from None
     try:
-        client: Any = Client(f"tcp://{address}", timeout=PATIENCE, set_as_default=False)
+        client: Any = Client(f"tcp://{address}", timeout=PATIENCE, set_as_default=False)  # type: ignore[no-untyped-call]
     except (OSError, ValueError) as error:
         raise ClusterError(f"no Dask scheduler answers at {address}: {error}", "--executor") from None
     try:

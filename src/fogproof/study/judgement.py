@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fogproof.checks import Finding
-from fogproof.checks.statistics.heavy import Tail
+from fogproof.checks.statistics.heavy import TailEstimate
 from fogproof.checks.statistics.means import mean_test
 from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.statistics.tails import gamma_above, normal_quantile, student_two_sided
@@ -164,7 +164,7 @@ def excess(data: Moments) -> float:
 def _heavy(levels: Sequence[Level], data: Moments, value: float) -> str:
     largest = _complete(levels)
     # Hill's estimate takes a thousandth of the sample; where fewer deviations are known, it looks further out.
-    tail = Tail(value, largest, min(data.n, 1000 * (len(largest) - 1)))
+    tail = TailEstimate(value, largest, min(data.n, 1000 * (len(largest) - 1)))
     index, spread = tail.index()
     if tail.suspect():
         return f"infinite variance suspected: the tail has index {index:.2g} +- {spread:.1g}, where 2 is the least"

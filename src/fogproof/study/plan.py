@@ -39,7 +39,7 @@ class Batch(NamedTuple):
     samples: int
 
 
-class Pieces(NamedTuple):
+class BatchPieces(NamedTuple):
     """The last four numbers of many batches, an array each."""
 
     first: np.ndarray
@@ -49,7 +49,7 @@ class Pieces(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Stretch:
+class BatchStretch:
     """The batches of one cell at one level.
 
     begin       number of the first of them
@@ -72,22 +72,22 @@ class Stretch:
     def __len__(self) -> int:
         return self.replicates * self.parts if self.parts > 1 else -(-self.replicates // self.together)
 
-    def pieces(self, numbers: np.ndarray) -> Pieces:
+    def pieces(self, numbers: np.ndarray) -> BatchPieces:
         """Return what the batches of these numbers hold."""
         k = numbers - self.begin
         if self.parts == 1:
             first = k * self.together
             rest = np.minimum(self.together, self.replicates - first)
-            return Pieces(first, rest, np.zeros_like(k), np.full_like(k, self.realisations))
+            return BatchPieces(first, rest, np.zeros_like(k), np.full_like(k, self.realisations))
         start = k % self.parts * self.part
-        return Pieces(k // self.parts, np.ones_like(k), start, np.minimum(self.part, self.realisations - start))
+        return BatchPieces(k // self.parts, np.ones_like(k), start, np.minimum(self.part, self.realisations - start))
 
 
 @dataclass(frozen=True)
 class Batches(Sequence[Batch]):
     """All batches of a study, by number."""
 
-    stretches: tuple[Stretch, ...]
+    stretches: tuple[BatchStretch, ...]
 
     def __len__(self) -> int:
         return self.stretches[-1].begin + len(self.stretches[-1])
@@ -108,14 +108,14 @@ class Batches(Sequence[Batch]):
                 yield from _each(stretch, np.arange(begin, min(begin + 10_000, end)))
 
 
-def _each(stretch: Stretch, numbers: np.ndarray) -> Iterator[Batch]:
+def _each(stretch: BatchStretch, numbers: np.ndarray) -> Iterator[Batch]:
     for number, *piece in zip(numbers.tolist(), *(a.tolist() for a in stretch.pieces(numbers)), strict=True):
         yield Batch(number, stretch.cell, stretch.level, stretch.size, *piece)
 
 
 def batches_of(cells: Sequence[Cell]) -> Batches:
     """Return all batches, small counts first: an unfinished study knows something of every cell."""
-    stretches: list[Stretch] = []
+    stretches: list[BatchStretch] = []
     begin = 0
     for level in range(max(len(cell.counts) for cell in cells)):
         for cell in cells:
@@ -125,12 +125,12 @@ def batches_of(cells: Sequence[Cell]) -> Batches:
     return Batches(tuple(stretches))
 
 
-def _stretch(begin: int, level: int, cell: Cell) -> Stretch:
+def _stretch(begin: int, level: int, cell: Cell) -> BatchStretch:
     count, replicates = cell.counts[level], cell.replicates
     if cell.method.axis != "samples":
-        return Stretch(begin, cell.index, level, count, 1, replicates, replicates, 1, 1)
+        return BatchStretch(begin, cell.index, level, count, 1, replicates, replicates, 1, 1)
     most = cell.study.batch
     if cell.points == "sobol":
         most = 1 << (most.bit_length() - 1)  # a power of two: a stretch of Sobol points is balanced only then
     parts = -(-count // most)
-    return Stretch(begin, cell.index, level, count, count, replicates, max(1, most // count), parts, most)
+    return BatchStretch(begin, cell.index, level, count, count, replicates, max(1, most // count), parts, most)

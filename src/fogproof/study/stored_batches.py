@@ -19,7 +19,7 @@ import numpy as np
 
 from fogproof.study.batches import COLUMNS, BatchResult
 from fogproof.study.files import Study
-from fogproof.study.plan import Batches, Stretch
+from fogproof.study.plan import Batches, BatchStretch
 from fogproof.study.store_faults import changed, damaged, explained
 
 _COLUMNS = "id, moments, tail, cost, wall, cpu, sum"
@@ -165,7 +165,7 @@ class Store:
             raise damaged(self.path, "the text of the study is gone")
         return texts[0] if texts else "{}"
 
-    def _drop_partial(self, number: int, stretch: Stretch, replicates: int) -> None:
+    def _drop_partial(self, number: int, stretch: BatchStretch, replicates: int) -> None:
         """Drop the last batch of a stretch that has grown, where it holds fewer replicates than it now has to."""
         if stretch.parts == 1 and replicates % stretch.together:
             key = number * _ROOM + replicates // stretch.together

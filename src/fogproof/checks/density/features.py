@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fogproof.checks.density.charts import Axis, Chart
-from fogproof.checks.density.grid import Marginal, Plane
+from fogproof.checks.density.grid import GridPlane, Marginal
 from fogproof.checks.density.model import Density
 from fogproof.checks.density.quadrature import NODES, Leaves
 
@@ -47,7 +47,7 @@ def ranges_of_line(axis: Axis, marginal: Marginal, jacobian: Density, curve_dens
     return Ranges(least, greatest)
 
 
-def ranges_of_plane(chart: Chart, leaves: Leaves, marginals: tuple[Marginal, ...], plane: Plane) -> Ranges:
+def ranges_of_plane(chart: Chart, leaves: Leaves, marginals: tuple[Marginal, ...], plane: GridPlane) -> Ranges:
     """Return the ranges in the coarse cells of a plane, from all nodes in them; where there is none, anything goes."""
     middle, half = 0.5 * (leaves.low + leaves.high), 0.5 * (leaves.high - leaves.low)
     at = middle[:, :, None] + half[:, :, None] * NODES

@@ -86,7 +86,7 @@ class Marginal:
 
 
 @dataclass(frozen=True)
-class Plane:
+class GridPlane:
     """The cells of two axes together.
 
     rows         two (m,) arrays: the row or column of the counted plane that each fine cell of an axis belongs to
@@ -130,7 +130,7 @@ class Grid:
     """All cells of a domain."""
 
     marginals: tuple[Marginal, ...]
-    plane: Plane | None
+    plane: GridPlane | None
 
 
 def cells_wanted(samples: int, axes: int) -> int:
@@ -246,7 +246,7 @@ def blurred(grid: Grid, chart: Chart, points: np.ndarray, nudges: list[np.ndarra
     return Grid(tuple(result), plane)
 
 
-def _plane(chart: Chart, leaves: Leaves, marginals: tuple[Marginal, ...], samples: int) -> Plane:
+def _plane(chart: Chart, leaves: Leaves, marginals: tuple[Marginal, ...], samples: int) -> GridPlane:
     size = 1 << int(np.clip(0.5 * np.log2(max(samples, 1) / 2), np.log2(_COARSE), np.log2(_FINEST_PLANE)))
     rows, shares, edges = [], [], []
     for axis, marginal in zip(chart.axes, marginals, strict=True):
@@ -263,7 +263,7 @@ def _plane(chart: Chart, leaves: Leaves, marginals: tuple[Marginal, ...], sample
     independent = bool(np.all(np.abs(mass - product) <= _INDEPENDENT * product + error))
     independent = independent and bool(np.all(error <= 1e-3 * product + 1e-9))
     none = np.zeros(size + 1)
-    return Plane((rows[0], rows[1]), (shares[0], shares[1]), (none, none), mass, error, independent)
+    return GridPlane((rows[0], rows[1]), (shares[0], shares[1]), (none, none), mass, error, independent)
 
 
 def pilot_grid(labels: tuple[str, ...], u: np.ndarray) -> Grid:
@@ -293,7 +293,7 @@ def unit_square_grid(labels: tuple[str, str], samples: int) -> Grid:
     rows = (np.arange(cells) * size) // cells
     mass = np.full((_COARSE, _COARSE), _COARSE**-2.0)
     share, zero = np.full(size, 1 / size), np.zeros(size + 1)
-    return Grid(marginals, Plane((rows, rows), (share, share), (zero, zero), mass, np.full_like(mass, 1e-14), True))
+    return Grid(marginals, GridPlane((rows, rows), (share, share), (zero, zero), mass, np.full_like(mass, 1e-14), True))
 
 
 def _masses(leaves: Leaves, first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

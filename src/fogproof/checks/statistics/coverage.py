@@ -15,7 +15,7 @@ import numpy as np
 
 from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.statistics.tails import binomial_at_most, binomial_interval, student_two_sided
-from fogproof.checks.verdict import Finding, Interval, Outcome
+from fogproof.checks.verdict import EffectInterval, Finding, Outcome
 
 SLACK = 0.05
 """Coverage that much below what is right is rejected: values need not be quite normal, but users must be safe."""
@@ -65,7 +65,7 @@ def coverage_test(name: str, data: Coverage, values: Sequence[Moments], alpha: f
     if min(freedom, default=math.inf) < 30:
         message += f" with {min(freedom):.2g} degrees of freedom: use Student's t for intervals"
     cause = "wrong standard errors" if outcome == "rejected" else ""
-    interval = Interval(low - nominal, high - nominal, 1 - _MISS)
+    interval = EffectInterval(low - nominal, high - nominal, 1 - _MISS)
     return Finding(name, outcome, message, p, alpha, False, share, share - nominal, interval=interval, cause=cause)
 
 

@@ -19,7 +19,7 @@ from fogproof.checks.statistics.tails import (
     chi_square_above,
     gamma_above,
 )
-from fogproof.checks.verdict import Finding, Interval, Outcome, Resolution
+from fogproof.checks.verdict import EffectInterval, Finding, Outcome, Resolution
 
 MISS = 0.01
 """Every resolution is stated for this probability of missing the error."""
@@ -67,7 +67,7 @@ def kolmogorov(name: str, marginal: Marginal, counts: np.ndarray, alpha: float) 
         distance,
         seen,
         resolution,
-        interval=Interval(max(seen - spread, 0.0), min(seen + spread, 1.0), 1 - MISS),
+        interval=EffectInterval(max(seen - spread, 0.0), min(seen + spread, 1.0), 1 - MISS),
         region=(below(marginal, where),) if p <= alpha else (),
         cause="shape" if p <= alpha else "",
     )
@@ -231,7 +231,7 @@ def binomial(name: str, what: str, count: int, n: int, low: float, high: float, 
         share,
         share - centre,
         resolution,
-        interval=Interval(ends[0] - centre, ends[1] - centre, 1 - MISS),
+        interval=EffectInterval(ends[0] - centre, ends[1] - centre, 1 - MISS),
         cause=cause if rejected else "",
     )
 

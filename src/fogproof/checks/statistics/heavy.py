@@ -17,19 +17,19 @@ _SURE = 3.3  # standard errors of the estimate
 
 
 @dataclass(frozen=True)
-class Tail:
+class TailEstimate:
     """The largest deviations |x - centre| of a stream of numbers, in no order."""
 
     centre: float
     largest: np.ndarray = field(default_factory=lambda: np.empty(0))
     n: int = 0
 
-    def after(self, x: np.ndarray) -> Tail:
+    def after(self, x: np.ndarray) -> TailEstimate:
         """Return the tail after the numbers x (n,)."""
         both = np.concatenate([self.largest, np.abs(x - self.centre)])
         if len(both) > _KEPT:
             both = np.partition(both, len(both) - _KEPT)[-_KEPT:]
-        return Tail(self.centre, both, self.n + len(x))
+        return TailEstimate(self.centre, both, self.n + len(x))
 
     def index(self, part: int = 1) -> tuple[float, float]:
         """Return Hill's estimate of the tail index and its standard error; (inf, 0) where there are too few numbers.

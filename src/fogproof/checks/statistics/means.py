@@ -18,7 +18,7 @@ from fogproof.checks.statistics.light import light_tailed_p, light_tailed_reach
 from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.statistics.power import binomial_reach, student_reach
 from fogproof.checks.statistics.tails import normal_quantile, student_two_sided
-from fogproof.checks.verdict import Finding, Interval, Outcome, Resolution
+from fogproof.checks.verdict import EffectInterval, Finding, Outcome, Resolution
 
 LARGEST_CORRECTION = 1.0  # of the exponent |skewness| z^3 / (3 sqrt n); beyond it the expansion is not trusted
 LARGEST_SHARE = 0.05  # of one sample in the sum of squares; beyond it the variance itself may be infinite
@@ -63,7 +63,7 @@ def mean_test(
         finding = replace(finding, outcome="inconclusive", message=message, p_value=None, resolution=None)
     reach = normal_quantile(0.5 * MISS) * data.stderr
     effect = data.mean - reference
-    interval = Interval(effect - reach, effect + reach, 1 - MISS) if math.isfinite(reach) else None
+    interval = EffectInterval(effect - reach, effect + reach, 1 - MISS) if math.isfinite(reach) else None
     rejected = finding.outcome == "rejected"
     if rejected and finding.p_value is not None and known.variance is None and not known.bounded:
         finding = replace(finding, message=finding.message + unseen(data, effect, error, alpha))

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fogproof.checks.density.grid import Marginal, Plane
+from fogproof.checks.density.grid import GridPlane, Marginal
 from fogproof.checks.statistics.goodness import MISS, between, binomial_p, deviances, nothing_counted
 from fogproof.checks.statistics.tails import binomial_interval
-from fogproof.checks.verdict import Finding, Interval, Resolution
+from fogproof.checks.verdict import EffectInterval, Finding, Resolution
 
 _SKIPPED = 0.5  # of the expected number of samples: a place with fewer is one that is avoided
 
@@ -104,7 +104,7 @@ def _extreme_p(share: float, doubt: float, n: int) -> float:
     return min(1.0, 2 * min(larger, smaller))
 
 
-def scan_plane(name: str, labels: tuple[str, str], plane: Plane, counts: np.ndarray, alpha: float) -> Finding:
+def scan_plane(name: str, labels: tuple[str, str], plane: GridPlane, counts: np.ndarray, alpha: float) -> Finding:
     """Look for a crowded or empty patch: squares of 1, 2, 4, ... cells of the plane, counts (size, size).
 
     The finer squares are only looked at where the axes are independent, for only then are their probabilities known.
@@ -134,7 +134,7 @@ def scan_plane(name: str, labels: tuple[str, str], plane: Plane, counts: np.ndar
     return _finding(name, best, n, alpha, place, resolution, finest**2, False)
 
 
-def _claimed(plane: Plane, cells: int) -> tuple[np.ndarray, np.ndarray]:
+def _claimed(plane: GridPlane, cells: int) -> tuple[np.ndarray, np.ndarray]:
     """Return the probabilities (cells, cells) of squares of the plane, and bounds on their errors."""
     if plane.independent:
         first, second = (share.reshape(cells, -1).sum(axis=1) for share in plane.shares)
@@ -189,7 +189,7 @@ def _finding(
         best.observed,
         share - best.probability,
         resolution,
-        interval=Interval(low - best.probability, high - best.probability, 1 - MISS),
+        interval=EffectInterval(low - best.probability, high - best.probability, 1 - MISS),
         region=(where,) if rejected else (),
         cause=cause,
     )

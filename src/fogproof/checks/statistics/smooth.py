@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from fogproof.checks.density.curve import legendre
-from fogproof.checks.density.grid import Marginal, Plane
+from fogproof.checks.density.grid import GridPlane, Marginal
 from fogproof.checks.statistics.goodness import MISS, nothing_counted
 from fogproof.checks.statistics.tails import chi_square_above, chi_square_detected
 from fogproof.checks.verdict import Finding, Resolution
@@ -42,7 +42,7 @@ def smooth(name: str, marginal: Marginal, counts: np.ndarray, alpha: float) -> F
     return finding
 
 
-def cross(name: str, labels: tuple[str, str], plane: Plane, counts: np.ndarray, alpha: float) -> Finding:
+def cross(name: str, labels: tuple[str, str], plane: GridPlane, counts: np.ndarray, alpha: float) -> Finding:
     """Test products of the first three Legendre polynomials of two axes on the coarse counts (32, 32): nine components."""
     n = int(counts.sum())
     if n == 0:

@@ -13,7 +13,7 @@ from fogproof.checks.statistics.goodness import MISS, binomial_p
 from fogproof.checks.statistics.means import LARGEST_CORRECTION, LARGEST_SHARE
 from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.statistics.tails import normal_quantile, student_two_sided
-from fogproof.checks.verdict import Finding, Interval, Outcome, Resolution
+from fogproof.checks.verdict import EffectInterval, Finding, Outcome, Resolution
 
 
 def difference_test(name: str, a: Moments, b: Moments, alpha: float) -> Finding:
@@ -22,7 +22,7 @@ def difference_test(name: str, a: Moments, b: Moments, alpha: float) -> Finding:
     errors = [0.0 if one.m2 == 0 else one.stderr for one in (a, b)]
     stderr = math.hypot(*errors)
     reach = normal_quantile(0.5 * MISS) * stderr
-    interval = Interval(effect - reach, effect + reach, 1 - MISS)
+    interval = EffectInterval(effect - reach, effect + reach, 1 - MISS)
     message = f"means {a.mean:.7g} and {b.mean:.7g} differ by {effect:+.3g} +- {stderr:.2g}"
     power = (normal_quantile(alpha / 2) + normal_quantile(MISS)) * stderr
     resolution = Resolution(name, power, MISS)

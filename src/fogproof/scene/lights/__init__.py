@@ -22,6 +22,17 @@ from fogproof.scene.lights.sphere import SphereLight
 from fogproof.scene.lights.spot import SpotLight
 from fogproof.validate import Channels
 
+__all__ = [
+    "DirectionalLight",
+    "DiskLight",
+    "Environment",
+    "Light",
+    "PointLight",
+    "RectangleLight",
+    "SphereLight",
+    "SpotLight",
+]
+
 Light = PointLight | SpotLight | DirectionalLight | Environment | SphereLight | RectangleLight | DiskLight
 KINDS: dict[str, type[Light]] = {
     "point": PointLight,

@@ -27,6 +27,19 @@ from fogproof.scene.media.piecewise_constant import PiecewiseConstantMedium
 from fogproof.scene.media.procedural import Procedural
 from fogproof.scene.media.voxel_grid import VoxelGrid
 
+__all__ = [
+    "AnisotropicMedium",
+    "AnyMedium",
+    "ExponentialMedium",
+    "GaussianPuffs",
+    "LinearMedium",
+    "Medium",
+    "OpenGLFog",
+    "PiecewiseConstantMedium",
+    "Procedural",
+    "VoxelGrid",
+]
+
 KINDS: dict[str, type] = {
     "homogeneous": Medium,
     "linear": LinearMedium,

@@ -8,6 +8,12 @@ from fogproof.scene.kinds import ByKind
 from fogproof.scene.occluders.disk import Disk
 from fogproof.scene.occluders.sphere import Sphere
 
+__all__ = [
+    "Disk",
+    "Occluder",
+    "Sphere",
+]
+
 Occluder = Sphere | Disk
 KINDS: dict[str, type[Occluder]] = {"sphere": Sphere, "disk": Disk}
 """The `kind` of each occluder in files and requests."""

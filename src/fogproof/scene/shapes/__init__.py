@@ -11,6 +11,15 @@ from fogproof.scene.shapes.half_space import HalfSpace
 from fogproof.scene.shapes.slab import Slab
 from fogproof.scene.shapes.unbounded import Unbounded
 
+__all__ = [
+    "Ball",
+    "Box",
+    "HalfSpace",
+    "Shape",
+    "Slab",
+    "Unbounded",
+]
+
 Shape = Unbounded | HalfSpace | Slab | Ball | Box
 KINDS: dict[str, type[Shape]] = {
     "unbounded": Unbounded,
