@@ -8,7 +8,7 @@ BIN    := $(VENV)/bin
 export OPENBLAS_NUM_THREADS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help verify gallery study test lint format calibrate field-bugs repeat families oracle-docs fuzz-oracle oracle-hard kill-study golden bench clean
+.PHONY: help verify gallery study test lint format calibrate field-bugs repeat families oracle-docs fuzz-oracle oracle-hard kill-study torture golden bench clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -62,6 +62,12 @@ study: $(VENV)/.installed  ## the lecture's estimators, speed against error; res
 
 kill-study: $(VENV)/.installed  ## kill a study at 20 random moments; nothing may be lost, and no bit may differ
 	$(BIN)/python tools/kill_study.py
+
+torture: $(VENV)/.installed-test  ## nothing lost, nothing silent: kills, flipped bits, broken lines and files; half an hour
+	$(BIN)/python tools/torture_store.py
+	$(BIN)/python tools/kill_study.py
+	$(BIN)/python tools/fuzz_oracle.py
+	$(BIN)/python tools/fuzz_files.py
 
 golden: $(VENV)/.installed-test  ## prove the golden tables again, by ball arithmetic
 	$(BIN)/python tools/make_golden.py --check

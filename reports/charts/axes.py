@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
-from math import ceil, floor, log10
+from math import ceil, floor, inf, log10
 from typing import Literal
 
 import numpy as np
@@ -17,6 +17,10 @@ from fogproof.reports.charts.sheet_png import text_width
 Values = Sequence[float] | np.ndarray
 DASHED = (7.0, 4.0)
 Marker = Literal["dot", "square", "triangle", "cross", "diamond"]
+
+
+LEAST, MOST = 1e-290, 1e290
+"""What scales reach at most: with margins around it is a number still."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +43,8 @@ class Scale:
         """Return round values within the scale, about `most` of them at most, and their labels."""
         if most < 1:
             return []
+        if not 0 < self.high - self.low < inf:  # a record changed by hand may hold anything
+            return []
         return _decades(self.low, self.high, most) if self.log else _steps(self.low, self.high, most)
 
 
@@ -46,9 +52,10 @@ def spanning(values: Values, log: bool = False, margin: float = 0.05) -> Scale:
     """Return a scale around all finite values (positive ones if logarithmic), never empty."""
     data = np.asarray(values, dtype=float)
     data = data[np.isfinite(data) & ((data > 0) | (not log))]
+    data = np.clip(data, LEAST if log else -MOST, MOST)
     low, high = (float(data.min()), float(data.max())) if data.size else (1.0, 1.0)
     if log:
-        room = max((high / low) ** margin, 1.05)
+        room = max(high**margin / low**margin, 1.05)
         return Scale(low / room, high * room, True)
     room = margin * (high - low) or 0.05 * abs(high) or 1.0
     return Scale(low - room, high + room)
@@ -229,8 +236,10 @@ def _plain(value: float, digits: int) -> str:
 
 
 def _decades(low: float, high: float, most: int) -> list[tuple[float, str]]:
+    if low <= 0:
+        return []
     first, last = floor(log10(low)), ceil(log10(high))
-    span = log10(high / low)
+    span = log10(high) - log10(low)
     factors = (1, 2, 5) if span < 2 else (1,)
     every = max(1, ceil(span / most))
     values = [f * 10.0**e for e in range(first, last + 1) if e % every == 0 for f in factors]

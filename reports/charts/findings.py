@@ -19,7 +19,7 @@ def parse_figure(figure: dict[str, Any], origin: str = "figure") -> PictureChart
     import pydantic
 
     kind = figure.get("kind")
-    if kind not in KINDS:
+    if not isinstance(kind, str) or kind not in KINDS:
         raise InvalidInputError(
             f"{origin}.kind must be one of {', '.join(KINDS)}, got {shorten(kind)}", f"{origin}.kind"
         )

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
+import numpy as np
+
 from fogproof.reports.charts.colours import ON_PAGE, PAPER
 from fogproof.reports.charts.sheet import Sheet
 from fogproof.reports.charts.sheet_png import png
@@ -56,5 +58,6 @@ class Picture:
 def render(chart: PictureChart, stem: str, size: tuple[float, float] = (560, 340)) -> Picture:
     """Draw on a new sheet of `size` [px] and return it as SVG and PNG; equal data give equal bytes."""
     sheet = Sheet(*size, PAPER)
-    words = chart.draw(sheet)
+    with np.errstate(all="ignore"):  # a record changed by hand may hold anything; what is not finite is not drawn
+        words = chart.draw(sheet)
     return Picture(stem, words, sheet.svg(), png(sheet))

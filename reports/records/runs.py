@@ -15,6 +15,7 @@ from typing import Any, Literal, TypeVar, cast
 
 from fogproof.checks.verdict import Verdict, jsonable
 from fogproof.errors import InvalidInputError, shorten
+from fogproof.input_files import read_text
 from fogproof.oracle_error import OracleError
 from fogproof.plan import Plan
 from fogproof.reports.charts.findings import parse_figure
@@ -135,18 +136,14 @@ def validated(kind: type[T], record: Any, origin: str) -> T:
 def load_record(folder: str | Path) -> dict[str, Any]:
     """Return what stands in `folder/results.json`, or say in an `InvalidInputError` why that is nothing."""
     path = Path(folder) / RESULTS
-    try:
-        text = path.read_text(encoding="utf-8")
-    except FileNotFoundError:
+    if not path.exists():
         there = "the folder has no" if Path(folder).is_dir() else f"there is no folder {folder} with a"
         make = f"'fogproof verify --report {folder}' or 'fogproof study STUDY.toml -o {folder}'"
-        raise InvalidInputError(f"cannot read {path}: {there} {RESULTS}; {make} make one", str(path)) from None
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
-        raise InvalidInputError(f"cannot read {path}: {reason}", str(path)) from None
+        raise InvalidInputError(f"cannot read {path}: {there} {RESULTS}; {make} make one", str(path))
+    text = read_text(path, "the record")
     try:
         record = json.loads(text)
-    except (json.JSONDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:
         ends = isinstance(error, json.JSONDecodeError) and error.pos >= len(text.rstrip())
         reason = "it ends in the middle of a record" if ends else f"it is not JSON ({error})"
         raise InvalidInputError(f"cannot read {path}: {reason}; run the checks again", str(path)) from None

@@ -98,5 +98,24 @@ def test_samples_are_held_against_the_pdf_although_a_cdf_is_given():
     options = {"dimensions": 2, "samples": 50_000, "cdf": cdf}
     assert check_sampler(sample, henyey_greenstein(0.7)[1], UnitSphere(), **options).outcome == "not rejected"
     verdict = check_sampler(sample, henyey_greenstein(0.8)[1], UnitSphere(), **options)
-    assert verdict.outcome == "rejected"
-    assert verdict.cause == "wrong formula"
+    rejected = {f.check: f.cause for f in verdict.findings if f.outcome == "rejected"}
+    assert rejected["cdf against the pdf"] == "wrong formula"
+    assert verdict.cause == "another parameter", "the samples are those of g = 0.7"
+
+
+def test_any_bijection_onto_the_square_will_do_and_none_hides_an_error():
+    """Axes swapped, one turned round, and sheared with a wrap: no Rosenblatt map, and as good as one."""
+    sample, pdf, cdf = henyey_greenstein(0.6)
+
+    def inverse(x):
+        u = cdf(x)
+        return np.stack([u[:, 1], (1 - u[:, 0] + 0.3 * u[:, 1]) % 1.0], axis=-1)
+
+    def check(sample, pdf, inverse):
+        return check_sampler(sample, pdf, UnitSphere(), dimensions=2, cdf=inverse, samples=60_000).outcome
+
+    assert check(sample, pdf, inverse) == "not rejected"
+    assert check(sample, lambda x: 0.98 * pdf(x), inverse) == "rejected"
+    assert check(henyey_greenstein(0.62)[0], pdf, inverse) == "rejected"
+    assert check(sample, henyey_greenstein(0.62)[1], inverse) == "rejected"
+    assert check(sample, lambda x: 0.5 * pdf(x), lambda x: inverse(x) * (0.5, 1.0)) == "rejected", "not onto the square"

@@ -61,7 +61,8 @@ def check_sampler(
     pdf          `pdf(x)` -> (n,) density of the continuous part in the domain's measure (a probability on `Discrete`)
     domain       where the points live, see `fogproof.domains`
     atoms        {point: probability}; a point may be inf, and is a tuple where points are several numbers
-    cdf          `cdf(x)` -> (n,) P(X <= x), atoms included; on two dimensions the Rosenblatt map, (n, 2) in [0, 1]^2
+    cdf          `cdf(x)` -> (n,) P(X <= x), atoms included; on two dimensions the Rosenblatt map or any
+                 bijection x -> u onto the unit square under which samples are uniform, such as the sampler's inverse: (n, 2)
     eval         `eval(x)` -> (n,) or (n, channels), the function that weights are for: a weight must be eval(x) / pdf(x)
     axis         unit vector; `mean_cosine` is the declared mean of x . axis on the sphere
     albedo       the integral of `eval` over the domain, one number or one a channel; without `eval`, the mean weight

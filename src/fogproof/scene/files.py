@@ -13,20 +13,17 @@ from pathlib import Path
 from typing import Any
 
 from fogproof.errors import InvalidInputError, InvalidValueError, shorten
+from fogproof.input_files import read_text
 from fogproof.scene.scenes import Scene
 
 
 def read_scene(path: str | Path) -> Scene:
     """Read a scene from a TOML file. Every fault is a `FogproofError` that names the file and the key."""
     path = Path(path)
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
-        raise InvalidInputError(f"cannot read the scene file {path}: {reason}", str(path)) from None
+    text = read_text(path, "the scene file")
     try:
         table = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise InvalidInputError(f"{path} is not valid TOML: {error}", str(path)) from None
     return read_fields({"scene": Scene}, {"scene": table}, str(path))["scene"]
 

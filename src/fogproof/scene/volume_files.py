@@ -28,15 +28,26 @@ which is right for transforms without rotation or shear.
 
 from __future__ import annotations
 
+import math
+import os
 import struct
+from io import BufferedReader
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.lib import format as npy
 
-from fogproof.errors import InvalidInputError, InvalidValueError, UnsupportedError
+from fogproof.errors import InvalidInputError, InvalidValueError, UnsupportedError, shorten
+from fogproof.input_files import open_regular, size_of
 from fogproof.scene.media.voxel_grid import VoxelGrid
 from fogproof.validate import number
+
+VALUES = 2**27
+"""The most values of a grid that is read: 1 GiB as float64."""
+
+LONGEST_HEADER = 10_000
+"""The longest header of a `.npy` file [bytes]: NumPy evaluates no longer one."""
 
 _HEADER = struct.Struct("<3sBi4i6f")
 _ENCODINGS: dict[int, tuple[np.dtype[Any], float]] = {1: (np.dtype("<f4"), 1.0), 3: (np.dtype("u1"), 1 / 255)}
@@ -60,50 +71,86 @@ def read_voxel_grid(
             f"{path}: grids are read from .npy and .vol files, got {path.suffix or 'no suffix'!r}", "path"
         )
     number("scale", scale, "must be finite and >= 0", 0)
-    try:
-        values, box = readers[path.suffix.lower()](path)
-    except OSError as error:
-        raise InvalidInputError(f"cannot read the grid {path}: {error.strerror or error}", str(path)) from None
+    values, box = readers[path.suffix.lower()](path)
     corners = [given if given is not None else stored for given, stored in zip((lower, upper), box, strict=True)]
     for name, corner in zip(("lower", "upper"), corners, strict=True):
         if corner is None:
             raise InvalidValueError(name, "must be given: a .npy file has no box", None, f"{name}=(x, y, z) in metres")
+    with np.errstate(over="ignore", invalid="ignore"):  # what is not finite then is refused by name
+        values = values * scale
     try:
-        return VoxelGrid(values * scale, corners[0], corners[1], **more)
+        return VoxelGrid(values, corners[0], corners[1], **more)
     except InvalidValueError as error:
         raise error.inside("the grid", str(path)) from None
 
 
 def _read_npy(path: Path) -> tuple[np.ndarray, tuple[None, None]]:
+    with open_regular(path, "the grid") as file:
+        try:
+            version = npy.read_magic(file)
+            header = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}.get(version)
+            if header is None:
+                raise ValueError(f"version {version[0]}.{version[1]} of the format is not read")
+            _require_short_header(file, 2 if version == (1, 0) else 4)
+            shape, by_columns, kind = header(file)
+        except Exception as error:  # NumPy evaluates the header as a Python literal: anything may come of it
+            said = str(error).partition("\n")[0][:80] or "its header is broken"
+            raise InvalidInputError(f"{path} is no .npy array: {said}", str(path)) from None
+        if kind.kind not in "iuf" or kind.itemsize > 8:
+            raise InvalidInputError(f"{path} must hold an array of numbers, got dtype {shorten(str(kind))}", str(path))
+        shape = tuple(int(n) for n in shape)  # a header may say True
+        values = _values(file, path, kind, shape)
+    return values.reshape(shape, order="F" if by_columns else "C").astype(np.float64), (None, None)
+
+
+def _require_short_header(file: BufferedReader, digits: int) -> None:
+    """Refuse a header that would be read whole before anybody asks how long it is; its length is `digits` bytes ahead."""
+    length = int.from_bytes(file.read(digits), "little")
+    file.seek(-min(digits, file.tell()), os.SEEK_CUR)
+    if length > LONGEST_HEADER:
+        raise ValueError(f"its header has {length} bytes")
+
+
+def _values(file: BufferedReader, path: Path, kind: np.dtype[Any], shape: tuple[int, ...]) -> np.ndarray:
+    """Return the rest of the file as values, (n,), if it is as long as its header says."""
+    count = math.prod(shape)  # exact, whatever the header says
+    if len(shape) not in (3, 4) or min(shape) < 1:
+        rule = "must be a grid (nx, ny, nz) or (nx, ny, nz, channels) with at least one voxel"
+        raise InvalidInputError(f"{path} {rule}, got {shorten(list(shape))}", str(path))
+    left = size_of(file) - file.tell()
+    if count > VALUES:
+        raise UnsupportedError(
+            f"{path} says it holds {shorten(list(shape))}; more than {VALUES} values are not read", str(path)
+        )
+    if left != count * kind.itemsize:
+        wanted = f"must have {count * kind.itemsize} bytes of values after its header, got {left}"
+        raise InvalidInputError(f"{path} {wanted}", str(path))
     try:
-        values = np.load(path, allow_pickle=False)
-    except (ValueError, EOFError) as error:
-        raise InvalidInputError(f"{path} is no .npy array: {error}", str(path)) from None
-    if not isinstance(values, np.ndarray) or values.dtype.kind not in "iuf":
-        raise InvalidInputError(f"{path} must hold an array of numbers", str(path))
-    return values.astype(np.float64), (None, None)
+        data = file.read(left)
+    except OSError as error:
+        raise InvalidInputError(f"cannot read the grid {path}: {error.strerror or error}", str(path)) from None
+    if len(data) != left:
+        raise InvalidInputError(f"cannot read the grid {path}: it changed while it was read", str(path))
+    return np.frombuffer(data, kind)
 
 
 def _read_vol(path: Path) -> tuple[np.ndarray, tuple[tuple[float, ...], tuple[float, ...]]]:
-    data = path.read_bytes()
-    if len(data) < _HEADER.size or data[:3] != b"VOL":
-        raise InvalidInputError(
-            f"{path} is no .vol file: it must begin with 'VOL' and a header of {_HEADER.size} bytes", str(path)
-        )
-    _, version, encoding, nx, ny, nz, channels, *box = _HEADER.unpack_from(data)
-    if version != 3:
-        raise UnsupportedError(f"{path} has version {version} of the .vol format; version 3 is read", str(path))
-    if encoding not in _ENCODINGS:
-        known = "1 (float32) and 3 (uint8) are"
-        raise UnsupportedError(f"{path} has encoding {encoding}; {known} read", str(path))
-    if min(nx, ny, nz, channels) < 1:
-        size = f"{nx} x {ny} x {nz} voxels of {channels} channels"
-        raise InvalidInputError(f"{path} holds an empty grid: {size}", str(path))
-    kind, unit = _ENCODINGS[encoding]
-    wanted = nx * ny * nz * channels * kind.itemsize
-    if len(data) - _HEADER.size != wanted:
-        got = len(data) - _HEADER.size
-        raise InvalidInputError(f"{path} must have {wanted} bytes of values after its header, got {got}", str(path))
-    values = np.frombuffer(data, kind, offset=_HEADER.size).reshape(nz, ny, nx, channels).transpose(2, 1, 0, 3)
-    values = values.astype(np.float64) * unit
+    with open_regular(path, "the grid") as file:
+        header = file.read(_HEADER.size)
+        if len(header) < _HEADER.size or header[:3] != b"VOL":
+            raise InvalidInputError(
+                f"{path} is no .vol file: it must begin with 'VOL' and a header of {_HEADER.size} bytes", str(path)
+            )
+        _, version, encoding, nx, ny, nz, channels, *box = _HEADER.unpack(header)
+        if version != 3:
+            raise UnsupportedError(f"{path} has version {version} of the .vol format; version 3 is read", str(path))
+        if encoding not in _ENCODINGS:
+            known = "1 (float32) and 3 (uint8) are"
+            raise UnsupportedError(f"{path} has encoding {encoding}; {known} read", str(path))
+        if min(nx, ny, nz, channels) < 1:
+            size = f"{nx} x {ny} x {nz} voxels of {channels} channels"
+            raise InvalidInputError(f"{path} holds an empty grid: {size}", str(path))
+        kind, unit = _ENCODINGS[encoding]
+        values = _values(file, path, kind, (nz, ny, nx, channels)).reshape(nz, ny, nx, channels)
+    values = values.transpose(2, 1, 0, 3).astype(np.float64) * unit
     return values[..., 0] if channels == 1 else values, (tuple(box[:3]), tuple(box[3:]))

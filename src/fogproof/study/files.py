@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from fogproof.errors import InvalidInputError, InvalidValueError, shorten
+from fogproof.input_files import read_text
 from fogproof.scene.files import read_fields
 from fogproof.study.media import sha256_of
 from fogproof.study.methods.table import OWN, MethodField
@@ -92,11 +93,7 @@ class Study:
 def read_study(path: str | Path) -> Study:
     """Read a study file; every fault is a `FogproofError` that names the file and the key."""
     path = Path(path)
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
-        raise InvalidInputError(f"cannot read the study file {path}: {reason}", str(path)) from None
+    text = read_text(path, "the study file")
     try:
         table = tomllib.loads(text)
     except (tomllib.TOMLDecodeError, RecursionError) as error:

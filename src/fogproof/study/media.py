@@ -14,6 +14,7 @@ import numpy as np
 
 from fogproof.errors import InvalidInputError, InvalidValueError
 from fogproof.estimators import FractalNoise
+from fogproof.input_files import open_regular
 from fogproof.scene import AnyMedium, Isotropic, Procedural, VoxelGrid
 from fogproof.scene.arrays import FloatArray
 from fogproof.scene.kinds import ByKind
@@ -97,10 +98,8 @@ class GridFile:
 
 def sha256_of(path: Path) -> str:
     """Return the digest of a file."""
-    try:
-        return hashlib.sha256(path.read_bytes()).hexdigest()
-    except OSError as error:
-        raise InvalidInputError(f"cannot read the grid {path}: {error.strerror or error}", str(path)) from None
+    with open_regular(path, "the grid") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 _KINDS: dict[str, type] = {**MEDIA, "noise": Noise, "random-grid": RandomGrid, "grid-file": GridFile}

@@ -1,0 +1,50 @@
+"""Files from outside, read whole: whatever cannot be read is said before memory is taken for it, and nothing is waited for."""
+
+from __future__ import annotations
+
+import os
+import stat
+from io import BufferedReader
+from pathlib import Path
+
+from fogproof.errors import InvalidInputError
+
+TEXT = 2**26
+"""The largest text that is read [bytes]: a scene, a study, a record."""
+
+
+def open_regular(path: str | Path, what: str) -> BufferedReader:
+    """Open a regular file to read, or raise an `InvalidInputError`: a device never ends, and a pipe may never begin.
+
+    what  what the file is, for the message: "the grid"
+    """
+    try:
+        file = open(os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)), "rb")  # noqa: SIM115
+    except (OSError, ValueError) as error:  # ValueError: a path with a zero byte
+        reason = getattr(error, "strerror", None) or str(error)
+        raise InvalidInputError(f"cannot read {what} {path}: {reason}", str(path)) from None
+    mode = os.fstat(file.fileno()).st_mode
+    if not stat.S_ISREG(mode):
+        file.close()
+        kind = "a pipe" if stat.S_ISFIFO(mode) else "a device"
+        raise InvalidInputError(f"cannot read {what} {path}: it must be a regular file, it is {kind}", str(path))
+    return file
+
+
+def size_of(file: BufferedReader) -> int:
+    """Return the size of an open file [bytes]."""
+    return os.fstat(file.fileno()).st_size
+
+
+def read_text(path: str | Path, what: str) -> str:
+    """Return the UTF-8 text of a regular file of no more than `TEXT` bytes, or raise an `InvalidInputError` that names it."""
+    with open_regular(path, what) as file:
+        if size_of(file) > TEXT:
+            size = f"it has {size_of(file)} bytes, more than {TEXT}"
+            raise InvalidInputError(f"cannot read {what} {path}: {size}", str(path))
+        try:
+            return file.read(TEXT).decode("utf-8").replace("\r\n", "\n")
+        except OSError as error:
+            raise InvalidInputError(f"cannot read {what} {path}: {error.strerror or error}", str(path)) from None
+        except UnicodeDecodeError:
+            raise InvalidInputError(f"cannot read {what} {path}: it is not UTF-8 text", str(path)) from None
