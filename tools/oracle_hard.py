@@ -36,13 +36,8 @@ NOT_A_QUANTITY = {"Coefficients", "Golden", "coefficients", "golden_values"}
 """Public names that give no value of their own."""
 
 ELSEWHERE = {
-    "air_cross_section": "tests/oracle/test_colour.py",
-    "air_optical_depth": "tests/oracle/test_colour.py",
     "sky_colour": "tests/oracle/test_colour.py",
     "sun_colour": "tests/oracle/test_colour.py",
-    "radiance": "tests/oracle/test_radiance.py",
-    "single_scattering_second_moment": "tests/oracle/test_second_moments.py",
-    "single_scattering_variance": "tests/oracle/test_second_moments.py",
 }
 """Functions that are sums or products of others, and where they are compared with the truth."""
 
