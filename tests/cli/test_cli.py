@@ -108,7 +108,7 @@ def test_oracle_gives_the_answers_that_physics_has():
 BAD_REQUESTS = [
     ({"medium": {"sigma_a": -1, "sigma_s": 0}}, "sigma_a must be finite and >= 0", "medium.sigma_a"),
     ({"medium": {"sigma_a": 0}}, "medium.sigma_s is missing", "medium.sigma_s"),
-    ({"ray": {**REQUEST["ray"], "length": 0}}, "length must be > 0", "ray.length"),
+    ({"ray": {**REQUEST["ray"], "length": -1}}, "length must be >= 0", "ray.length"),
     ({"ray": {**REQUEST["ray"], "direction": [0, 0, 3]}}, "direction must have unit length", "ray.direction"),
     ({"luck": 1}, "luck is not a known key", "luck"),
     ({"quantity": "phase_pdf"}, "phase is missing (and 3 more)", "phase"),
