@@ -131,11 +131,11 @@ def interpolate(array: np.ndarray, part: CellSegments) -> np.ndarray:
     mean = np.zeros(())
     for node in GAUSS:
         t = dd.add(part.start, dd.times(part.length, dd.pair(node)))
-        u = [_above_centre(axis, cell, t) for axis, cell in zip(part.axes, part.cells, strict=True)]
+        shares = [_shares(axis, cell, t) for axis, cell in zip(part.axes, part.cells, strict=True)]
         for corner in product((0, 1), repeat=3):
             ends = zip(part.cells, corner, array.shape[:3], strict=True)
             found = array[tuple(np.clip(cell - 1 + end, 0, n - 1) for cell, end, n in ends)]
-            weight = np.prod([x if end else 1 - x for x, end in zip(u, corner, strict=True)], axis=0) / 2
+            weight = np.prod([share[end] for share, end in zip(shares, corner, strict=True)], axis=0) / 2
             mean = (
                 mean + (found * weight)[:, None]
                 if found.ndim == 2
@@ -144,11 +144,15 @@ def interpolate(array: np.ndarray, part: CellSegments) -> np.ndarray:
     return mean
 
 
-def _above_centre(axis: GridAxis, cell: np.ndarray, t: Pair) -> np.ndarray:
-    """Return how far the points at t are above the lower centre of their cell, in [0, 1]."""
+def _shares(axis: GridAxis, cell: np.ndarray, t: Pair) -> tuple[np.ndarray, np.ndarray]:
+    """Return the weights of the lower and of the upper centre of the cells at t, in [0, 1].
+
+    Each is taken from the pair: 1 - u of a rounded u would lose the digits of a small share, which may be the only one that counts.
+    """
     alpha, beta = (dd.each(lambda x: x[:, None], pair) for pair in (axis.alpha, axis.beta))
-    place = dd.add(dd.add(alpha, dd.times(beta, t)), dd.pair(0.5 - cell))
-    return np.clip(place[0], 0.0, 1.0)
+    upper = dd.add(dd.add(alpha, dd.times(beta, t)), dd.pair(0.5 - cell))
+    lower = dd.add(dd.pair(1.0), dd.negative(upper))
+    return np.clip(lower[0], 0.0, 1.0), np.clip(upper[0], 0.0, 1.0)
 
 
 def radiance(medium: VoxelGrid, ray: Ray, ambient: Any, background: Any, *, times_sigma_a: bool = True) -> Reference:

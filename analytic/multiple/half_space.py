@@ -73,6 +73,7 @@ def half_space_reflectance_orders(mu0: FloatArray, count: Count) -> Reference:
         checked_count("count", count),
         known=lambda c: half_space_reflectance(c, mu0),
         source=SOURCE,
+        first=np.zeros_like(mu0),  # what has not scattered does not come back
     )
 
 

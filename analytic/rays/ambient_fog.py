@@ -67,5 +67,13 @@ def ambient_fog(
         value = survived * background + extinguished * source
         error = 12 * EPS * value + inherited * np.maximum(background, source)
         error = error + 6 * TINY * (1 + np.maximum(np.maximum(background, ambient), medium.emission))
-        error = np.where((np.asarray(background) == 0) & (source == 0), 0.0, error)  # nothing shines: 0 for sure
+        # Nothing shines: 0 for sure. A product that is 0 because it underflows is none of these.
+        dark = (np.asarray(background) == 0) & ~((np.asarray(ambient) > 0) & _present(medium, "sigma_s", scattered))
+        dark &= ~((np.asarray(medium.emission) > 0) & _present(medium, "sigma_a", absorbed))
+        error = np.where(dark, 0.0, error)
     return Reference(value, error, f"lerp of radiances, {tau.method}", SOURCE)
+
+
+def _present(medium: object, name: str, share: np.ndarray) -> np.ndarray:
+    """Return whether a medium scatters or absorbs at all; its share of the extinction may have underflowed."""
+    return np.asarray(getattr(medium, name, share)) > 0

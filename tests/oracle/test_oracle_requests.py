@@ -121,7 +121,7 @@ FAULTS = [
     ("{}", "quantity", "invalid-input", "quantity is missing; known are"),
     ('{"quantity": "luck"}', "quantity", "invalid-input", "'luck' is not known"),
     ('{"quantity": ["a"]}', "quantity", "invalid-input", "is not known"),
-    (json.dumps({**REQUESTS[1], "ray": {**RAY, "length": -1}}), "ray.length", "invalid-value", "length must be > 0"),
+    (json.dumps({**REQUESTS[1], "ray": {**RAY, "length": -1}}), "ray.length", "invalid-value", "length must be >= 0"),
     (json.dumps({**REQUESTS[1], "medium": {"sigma_a": 1}}), "medium.sigma_s", "invalid-input", "is missing"),
     (json.dumps({**REQUESTS[1], "medium": {**FOG, "kind": "gas"}}), "medium", "invalid-input", "known are"),
     (json.dumps({**AIRLIGHT, "method": "magic"}), "method", "invalid-input", "method"),

@@ -30,6 +30,7 @@ def cases() -> list[Case]:
             cost=lambda: transmittance_lookups(PUFFS, RAY, "ratio", MAJORANT),
             oracle=MEAN_VARIANCE_COST,
             source=NOVAK,
+            options={"bounds": (0.0, 1.0)},  # a product of 1 - sigma_t/majorant
             twin=Twin("exp(-x^2/w^2) taken for exp(-x^2/(2 w^2))", lambda: RatioTransmittance(WIDER, RAY, MAJORANT)),
         ),
         SamplerCase(
