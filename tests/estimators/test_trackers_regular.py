@@ -84,12 +84,12 @@ def test_faces_edges_and_corners(interpolation: str, name: str) -> None:
 
 @pytest.mark.parametrize("interpolation", INTERPOLATIONS)
 def test_rays_of_hardly_any_length(interpolation: str) -> None:
-    for length in (5e-324, 1e-300, 1e-16):
+    for length in (0.0, 5e-324, 1e-300, 1e-16):
         walk = regular_tracking(dyadic(interpolation), Ray((0.1, 0.1, 0.1), unit(1, 2, 3), length))
         assert 0 <= walk.tau[0] <= 5 * length
         assert walk.distance[0] == length
     with pytest.raises(InvalidValueError, match="length"):
-        Ray((0, 0, 0), (0, 0, 1), 0.0)
+        Ray((0, 0, 0), (0, 0, 1), -1e-300)
 
 
 @pytest.mark.parametrize("interpolation", INTERPOLATIONS)
