@@ -46,12 +46,11 @@ def test_processes_give_the_same_bits_and_survive_a_death(tmp_path, undisturbed)
     """One batch kills the worker that draws it, the first time; another one always does."""
     once, always = 20, 33
     study, cells, batches = STUDY, cells_of(STUDY), batches_of(cells_of(STUDY))
-    os.environ["STUDY_TEST_FOLDER"] = str(tmp_path)
     with opened(tmp_path / "run", study) as store, open_workers("processes", 1) as pool:
         told = []
         draw_missing(
             study, cells, batches, store, pool, lambda batch, result: told.append((batch.number, result is None)),
-            _deadly(once, always),
+            _deadly(once, always, tmp_path),
         )  # fmt: skip
         assert (always, True) in told
         assert [f[:2] for f in store.failures()] == [(always, ATTEMPTS)]
@@ -73,13 +72,12 @@ def test_processes_give_the_same_bits_and_survive_a_death(tmp_path, undisturbed)
 
 
 class _deadly:  # noqa: N801 - a function that can be pickled
-    def __init__(self, once, always):
-        self.once, self.always = once, always
+    def __init__(self, once, always, folder):
+        self.once, self.always, self.marker = once, always, str(folder / "dead")
 
     def __call__(self, text, folder, batch, reference):
-        marker = os.path.join(os.environ["STUDY_TEST_FOLDER"], "dead")
-        if batch.number == self.always or (batch.number == self.once and not os.path.exists(marker)):
-            open(marker, "w").close()
+        if batch.number == self.always or (batch.number == self.once and not os.path.exists(self.marker)):
+            open(self.marker, "w").close()
             os.kill(os.getpid(), signal.SIGKILL)
         return run_batch(text, folder, batch, reference)
 

@@ -113,7 +113,7 @@ class Planted:
     quantity: ClassVar[str] = "transmittance"
     axis: ClassVar[str] = "samples"
     expected: ClassVar[str] = "not rejected"
-    reason: ClassVar[str] = ""
+    bias: ClassVar[str] = ""
     dimensions: ClassVar[None] = None
 
     @property
