@@ -29,7 +29,7 @@ ROOMS = {
 def test_every_kind_is_drawn_and_its_parameters_vary(room, kind):
     made = []
 
-    @settings(max_examples=8, database=None)
+    @settings(max_examples=50, database=None)
     @given(getattr(strategies, room)(kind), st.from_type(ROOMS[room][kind]))
     def draws(thing, typed):
         assert type(thing) is type(typed) is ROOMS[room][kind]
