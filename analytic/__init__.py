@@ -6,6 +6,7 @@ exact binary64 numbers.
 
 from fogproof.analytic.airlight.integral import airlight_integral, airlight_table
 from fogproof.analytic.airlight.single_scattering import single_scattering
+from fogproof.analytic.images.image import image
 from fogproof.analytic.media.coefficients import Coefficients, coefficients
 from fogproof.analytic.multiple.ball import (
     ball_albedo,
@@ -92,6 +93,7 @@ __all__ = [
     "half_space_reflectance",
     "half_space_reflectance_orders",
     "half_space_spherical_albedo",
+    "image",
     "mean_displacement",
     "mean_path_length",
     "mean_scatterings",
