@@ -138,9 +138,10 @@ def _cut(
         known = value.copy()
         np.add.at(known, owner, area * mean)
         allowed = tolerance * np.maximum(np.abs(known), floor)[owner] * (0.25 if level else 1.0) * side
-        open_ = (area * gap > allowed).any(axis=1)
-        crowd: np.ndarray = np.bincount(owner, open_, pixels)
-        stop = (crowd[owner] > CELLS) | (level == LEVELS) | (spent + 4 * int(open_.sum()) * len(nx) > most)
+        open_: np.ndarray = (area * gap > allowed).any(axis=1)
+        crowded = np.asarray(np.bincount(owner, open_, pixels) > CELLS, bool)
+        last = level == LEVELS or spent + 4 * int(open_.sum()) * len(nx) > most
+        stop = np.full(len(owner), last) | np.take(crowded, owner)
         done = ~open_ | stop
         np.add.at(value, owner[done], area * mean[done])
         off = area * (np.where(open_[:, None], np.maximum(gap, 0.25 * span), gap) + noise)
