@@ -138,7 +138,7 @@ def _cut(
         known = value.copy()
         np.add.at(known, owner, area * mean)
         allowed = tolerance * np.maximum(np.abs(known), floor)[owner] * (0.25 if level else 1.0) * side
-        open_: np.ndarray = (area * gap > allowed).any(axis=1)
+        open_ = np.any(area * gap > allowed, axis=1)
         crowded = np.asarray(np.bincount(owner, open_, pixels) > CELLS, bool)
         last = level == LEVELS or spent + 4 * int(open_.sum()) * len(nx) > most
         stop = np.full(len(owner), last) | np.take(crowded, owner)
