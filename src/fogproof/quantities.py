@@ -75,7 +75,7 @@ def quantities() -> dict[str, Quantity]:
 
 def _quantity(name: str, function: FunctionType, told: Declaration) -> Quantity:
     arguments, call = _arguments(function), told.answer or function
-    meanings = _meanings_of(function)
+    meanings = {**_meanings_of(Scene), **_meanings_of(function)}
     if list(arguments) == ["scene"]:  # programs give a scene by its keys
         scene: type[Scene] | type[ImageScene] = arguments["scene"]
         arguments, call = _fields(scene), lambda **keys: function(scene(**keys))
