@@ -33,7 +33,7 @@ def scattering_count_law(
     >>> from fogproof import analytic
     >>> law = analytic.scattering_count_law("rod_reflectance", albedo=0.5, count=2, length=1.0)
     >>> law.value.round(3).tolist()
-    [0.0, 0.814, 0.0]
+    [0.0, 0.826, 0.142]
     """
     name, function = named(quantity)
     orders = getattr(analytic, f"{name}_orders", None)
