@@ -1,5 +1,8 @@
 """Derivatives of the oracle's quantities against 50 digits, scattering orders and each other."""
 
+import doctest
+import importlib
+
 import mpmath as mp
 import numpy as np
 import pytest
@@ -237,3 +240,10 @@ def test_wrong_names_are_told(quantity, wrt, told):
 def test_what_the_quantity_refuses_stays_refused():
     with pytest.raises(FogproofError, match="albedo must lie in"):
         gradient("half_space_reflectance", "albedo", albedo=1.5, mu0=0.5)
+
+
+@pytest.mark.parametrize("module", ["gradient", "path_length", "scattering_counts"])
+def test_examples_of_the_docstrings(module):
+    results = doctest.testmod(importlib.import_module(f"fogproof.analytic.derivatives.{module}"), extraglobs={"np": np})
+    assert results.attempted > 0
+    assert results.failed == 0
