@@ -22,6 +22,7 @@ _COMMANDS = {
     "list": "Show the cases of the catalogue.",
     "check": "Judge somebody else's program over a pipe, or a file of samples.",
     "oracle": "Answer JSON requests with reference values and error bounds.",
+    "compare": "Compare another renderer's image with the oracle.",
     "golden": "Write reference values with error bounds for offline test suites.",
     "plan": "Say which terms a scene needs, and which methods serve it.",
     "study": "Measure speed against error, resumable, on one core or a cluster.",
