@@ -16,7 +16,7 @@ too, and held to what one jump in a panel can cost (`jump_bound`).
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -58,8 +58,17 @@ SourceTerm = Callable[[Coefficients], np.ndarray]
 """Radiance gained per metre [W/(m^3 sr)] at points with these coefficients."""
 
 
-Look = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
-"""(rays (p,), distances (p, nodes)) -> sigma_t and source there, (p, nodes) or (p, nodes, channels)."""
+class Look(Protocol):
+    """What gives sigma_t and the source on rays (p,) at distances (p, nodes), (p, nodes) or (p, nodes, channels).
+
+    moved  (p, nodes, 3) added to the places [m]
+    """
+
+    def __call__(
+        self, which: np.ndarray, t: np.ndarray, moved: np.ndarray | float = 0.0
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return both."""
+        ...
 
 
 class Along(NamedTuple):
