@@ -21,7 +21,7 @@ from fogproof.validate import number
 Side = Literal["reflected", "transmitted"]
 
 
-class Walks(NamedTuple):
+class FinishedWalks(NamedTuple):
     """Paths from the surface on.
 
     side        (n,) -1 reflected, 1 transmitted, 0 absorbed
@@ -61,7 +61,7 @@ class SlabWalk:
         number("mu0", self.mu0, "must lie in (0, 1]", np.nextafter(0, 1), 1)
         number("g", self.g, "must lie in (-1, 1)", -1, 1, open_ends=True)
 
-    def walk(self, rng: np.random.Generator, n: int) -> Walks:
+    def walk(self, rng: np.random.Generator, n: int) -> FinishedWalks:
         """Follow n photons to their ends."""
         side, length, score = np.zeros(n, dtype=int), np.zeros(n), np.zeros(n)
         collisions = np.zeros(n)
@@ -82,9 +82,9 @@ class SlabWalk:
             score[alive] += asymmetry_score(self.g, turned)
             around = np.cos(2 * np.pi * rng.random(alive.size))
             mu = np.clip(mu * turned + np.sqrt((1 - mu * mu) * (1 - turned * turned)) * around, -1, 1)
-        return Walks(side, length, collisions, score)
+        return FinishedWalks(side, length, collisions, score)
 
-    def leaves(self, walks: Walks, side: Side) -> np.ndarray:
+    def leaves(self, walks: FinishedWalks, side: Side) -> np.ndarray:
         """Return which of the walks leave there."""
         return walks.side == (-1 if side == "reflected" else 1)
 

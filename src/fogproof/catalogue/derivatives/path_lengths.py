@@ -11,7 +11,7 @@ from fogproof.catalogue.cases import EstimatorCase
 from fogproof.catalogue.derivatives.builders import altered, derivative_case
 from fogproof.contracts import Draws
 from fogproof.estimators.derivatives.ball_walks import BallPathLengths
-from fogproof.estimators.derivatives.slab_walks import SlabPathLengths, SlabScatteringCounts, SlabWalk, Walks
+from fogproof.estimators.derivatives.slab_walks import FinishedWalks, SlabPathLengths, SlabScatteringCounts, SlabWalk
 from fogproof.scene import HenyeyGreenstein
 
 SOURCE = "Feynman-Kac: absorption is the variable of a Laplace transform"
@@ -21,7 +21,7 @@ RATES = (0.0, 0.2, 1.0, 2.0)
 class _Overshooting(SlabWalk):
     """The last flight counts as if it went on behind the boundary, a mean free path further."""
 
-    def walk(self, rng: np.random.Generator, n: int) -> Walks:
+    def walk(self, rng: np.random.Generator, n: int) -> FinishedWalks:
         walks = super().walk(rng, n)
         return walks._replace(length=walks.length + rng.standard_exponential(n))
 
@@ -44,7 +44,7 @@ def cases() -> list[EstimatorCase]:
     deep = (0.7, np.inf, 0.5)
     return [
         derivative_case(
-            name="path_lengths/slab",
+            name="path-lengths/slab",
             title="Path lengths of what passes a slab",
             make=lambda: SlabPathLengths(SlabWalk(*beam), RATES, "transmitted"),
             reference=_slab("slab_transmittance", albedo=0.9, tau=2.0, mu0=0.5, phase=lobe),
@@ -56,7 +56,7 @@ def cases() -> list[EstimatorCase]:
             samples=200_000,
         ),
         derivative_case(
-            name="path_lengths/half_space",
+            name="path-lengths/half-space",
             title="Path lengths of what a half space reflects",
             make=lambda: SlabPathLengths(SlabWalk(*deep), RATES),
             reference=_slab("half_space_reflectance", albedo=0.7, mu0=0.5),
@@ -68,7 +68,7 @@ def cases() -> list[EstimatorCase]:
             samples=200_000,
         ),
         derivative_case(
-            name="path_lengths/ball",
+            name="path-lengths/ball",
             title="Path lengths of what leaves a ball",
             make=lambda: BallPathLengths(0.8, 1.5, RATES),
             reference=_slab("ball_albedo", albedo=0.8, radius=1.5),
@@ -80,7 +80,7 @@ def cases() -> list[EstimatorCase]:
             samples=200_000,
         ),
         derivative_case(
-            name="path_lengths/scatterings",
+            name="path-lengths/scatterings",
             title="How often what passes a slab has scattered",
             make=lambda: SlabScatteringCounts(SlabWalk(0.9, 2.0, 0.5), 4, "transmitted"),
             reference=lambda: _counts(0.9, 4, tau=2.0, mu0=0.5),
@@ -98,7 +98,7 @@ def cases() -> list[EstimatorCase]:
 class _Late(SlabWalk):
     """The clock starts at the first collision."""
 
-    def walk(self, rng: np.random.Generator, n: int) -> Walks:
+    def walk(self, rng: np.random.Generator, n: int) -> FinishedWalks:
         walks = super().walk(rng, n)
         return walks._replace(length=np.maximum(walks.length - rng.standard_exponential(n), 0.0))
 

@@ -67,7 +67,7 @@ def cases() -> list[EstimatorCase]:
     airlight = {"medium": FOG, "ray": RAY, "light": LAMP}
     return [
         derivative_case(
-            name="derivatives/transmittance/free_path",
+            name="derivatives/transmittance/free-path",
             title="dT/d sigma_t by the score of free paths",
             make=lambda: FreePathScore(0.8, 2.0),
             reference=lambda: analytic.gradient("transmittance", "medium.sigma_t", medium=Medium(0.3, 0.5), ray=RAY),
@@ -77,7 +77,7 @@ def cases() -> list[EstimatorCase]:
             source=SCORE,
         ),
         derivative_case(
-            name="derivatives/transmittance/ratio_tracking",
+            name="derivatives/transmittance/ratio-tracking",
             title="dT/d sigma_t of each layer by ratio tracking, attached",
             make=lambda: RatioTrackingSlopes(LAYERS, (0.5, 1.0, 0.5), 2.5),
             reference=lambda: analytic.gradient("transmittance", "medium.sigma_t", **_layers()),
@@ -87,7 +87,7 @@ def cases() -> list[EstimatorCase]:
             source=ATTACHED,
         ),
         derivative_case(
-            name="derivatives/airlight/free_path",
+            name="derivatives/airlight/free-path",
             title="Airlight by sigma_a, sigma_s and g, distances from free paths",
             make=lambda: AirlightSlopes(FOG, RAY, LAMP),
             reference=lambda: slopes("single_scattering", *COEFFICIENTS, **airlight),
@@ -97,7 +97,7 @@ def cases() -> list[EstimatorCase]:
             source=SCORE,
         ),
         derivative_case(
-            name="derivatives/airlight/phase_function",
+            name="derivatives/airlight/phase-function",
             title="Airlight by sigma_a, sigma_s and g: the phase function's weight is attached",
             make=lambda: AirlightSlopes(FOG, RAY, LAMP, "uniform"),
             reference=lambda: slopes("single_scattering", *COEFFICIENTS, **airlight),
@@ -107,7 +107,7 @@ def cases() -> list[EstimatorCase]:
             source=ATTACHED,
         ),
         derivative_case(
-            name="derivatives/airlight/shadow_rays",
+            name="derivatives/airlight/shadow-rays",
             title="Airlight by sigma_a, sigma_s and g: the way to the lamp is attached",
             make=lambda: AirlightSlopes(FOG, RAY, LAMP, "uniform"),
             reference=lambda: slopes("single_scattering", *COEFFICIENTS, **airlight),
@@ -142,7 +142,7 @@ def cases() -> list[EstimatorCase]:
 
 
 class _Unscored(SlabWalk):
-    """Walks that do not count the flight out of the slab."""
+    """FinishedWalks that do not count the flight out of the slab."""
 
     def walk(self, rng: np.random.Generator, n: int) -> Any:
         walks = super().walk(rng, n)
