@@ -13,9 +13,11 @@ import numpy as np
 
 from fogproof.contracts import Draws
 from fogproof.errors import InvalidValueError
-from fogproof.estimators.derivatives.scores import asymmetry_score
 from fogproof.estimators.phase.functions import phase_value
-from fogproof.scene import HenyeyGreenstein, Medium, PointLight, Ray
+from fogproof.scene import Medium, PointLight, Ray
+from fogproof.scene.kinds import given
+
+PHASES = "fogproof.estimators.phase"
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,8 +36,12 @@ class AirlightSlopes:
     distances: Literal["free_path", "uniform"] = "free_path"
 
     def __post_init__(self) -> None:
-        if not isinstance(self.medium.phase, HenyeyGreenstein) or not np.all(np.asarray(self.medium.sigma_s) > 0):
-            raise InvalidValueError("medium", "must scatter, with a Henyey-Greenstein phase function", self.medium)
+        if given(self.medium.phase, PHASES, "asymmetry_score") is None or not np.all(
+            np.asarray(self.medium.sigma_s) > 0
+        ):
+            raise InvalidValueError(
+                "medium", "must scatter, with a phase function that has an asymmetry_score", self.medium
+            )
 
     def draw(self, rng: np.random.Generator, n: int) -> Draws:
         """Return n realisations (n, 3) of the derivatives by sigma_a, sigma_s and g."""
@@ -43,7 +49,7 @@ class AirlightSlopes:
         sigma_t, sigma_s = float(self.medium.sigma_t), float(np.asarray(self.medium.sigma_s))
         # A free path's density stands in the denominator, and its score brings it back; a uniform distance has none.
         by_t = (score - 1 / sigma_t if self.distances == "free_path" else -score) - toward
-        by_g = asymmetry_score(_asymmetry(self.medium), mu)
+        by_g = given(self.medium.phase, PHASES, "asymmetry_score")(self.medium.phase, mu)
         return Draws(value[:, None] * np.stack([by_t, by_t + 1 / sigma_s, by_g], axis=1))
 
     def pieces(self, rng: np.random.Generator, n: int) -> tuple[np.ndarray, ...]:
@@ -64,8 +70,3 @@ class AirlightSlopes:
         lit = scatters * np.exp(-sigma_t * r) / (r * r)
         value = np.where(inside, lit / sigma_t if free else lit * length * np.exp(-sigma_t * t), 0.0)
         return value, (1 / sigma_t - t) if free else t, r, mu
-
-
-def _asymmetry(medium: Medium) -> float:
-    assert isinstance(medium.phase, HenyeyGreenstein)
-    return medium.phase.g

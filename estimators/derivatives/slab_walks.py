@@ -13,8 +13,7 @@ import numpy as np
 
 from fogproof.contracts import Draws
 from fogproof.errors import InvalidValueError
-from fogproof.estimators.derivatives.scores import asymmetry_score
-from fogproof.estimators.phase.henyey_greenstein import cosines
+from fogproof.estimators.phase.henyey_greenstein import asymmetry_score, cosines
 from fogproof.scene import HenyeyGreenstein
 from fogproof.validate import number
 
@@ -79,7 +78,7 @@ class SlabWalk:
             turned = np.empty(alive.size)
             cosines(phase, rng.random(alive.size), turned)
             collisions[alive] += 1
-            score[alive] += asymmetry_score(self.g, turned)
+            score[alive] += asymmetry_score(phase, turned)
             around = np.cos(2 * np.pi * rng.random(alive.size))
             mu = np.clip(mu * turned + np.sqrt((1 - mu * mu) * (1 - turned * turned)) * around, -1, 1)
         return FinishedWalks(side, length, collisions, score)
