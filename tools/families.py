@@ -198,7 +198,9 @@ def main() -> int:
     parser.add_argument("--right-seeds", type=int, default=100, help="searches of each right family")
     parser.add_argument("--samples", type=int, default=10_000_000, help="of a search of a broken family")
     parser.add_argument("--right-samples", type=int, default=1_000_000, help="of a search of a right one")
-    parser.add_argument("--log", type=Path, default=Path("build/families.jsonl"), help="searches done; those are not done again")
+    parser.add_argument(
+        "--log", type=Path, default=Path("build/families.jsonl"), help="searches done; those are not done again"
+    )
     given = parser.parse_args()
     given.log.parent.mkdir(parents=True, exist_ok=True)
     done = [json.loads(line) for line in given.log.read_text().splitlines()] if given.log.exists() else []

@@ -6,7 +6,8 @@ python tools/fuzz_commands.py --runs 1000 --seed 7
 Runs happen in this process, by the function that the console script calls; one in `--apart` is repeated as a process of its own
 and must end the same. Studies, scenes, cases, records and requests are broken by a few seeded changes, words and options exchanged.
 A fault of ours is: an exit code that does not belong to the command, a refusal without a sentence, a traceback, a character that
-moves a terminal, the code `internal`, more than ten seconds, or a gibibyte in all. It is printed, and the exit code is 1.
+moves a terminal, a warning, the code `internal`, more than ten seconds of the processor, or a gibibyte in all. It is printed, and
+the exit code is 1.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from fuzz_files import GIBIBYTE, SCENE, SECONDS, STUDY, broken_bytes, broken_table, made, text_of
+from fuzz_files import GIBIBYTE, SCENE, SECONDS, STUDY, broken_bytes, broken_table, made, text_of, watch
 from fuzz_oracle import broken_line
 
 from fogproof.catalogue.own import own_cases
@@ -60,10 +61,10 @@ STUDY_FILE = {**STUDY, "samples": [10], "replicates": 4}
 WORDS = [
     "", "-", "--", "-h", "--json", "--list", "--seed", "-1", "0", "1e400", "nan", "fog/analog/haze", "fog/*", "[", "**", "nothing",
     "../..", "/dev/null", "a\x1b[31m", "\u202eb", "x.py", "x.py::", "::", "--alpha", "--workers", "--report", "--against", "-o",
-    "--twins", "--time-limit", "--rigorous", "--max-values", "--timeout", "--format", "csv", "--executor", "dask://", "phase_pdf", "\ud800",
+    "--twins", "--time-limit", "--rigorous", "--max-values", "--timeout", "--format", "csv", "--executor", "dask://", "\udcff",
 ]  # fmt: skip
 COMMANDS = ("verify", "list", "oracle", "golden", "plan", "study", "report", "gallery", "", "veriffy")
-MOVES_A_TERMINAL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069]")
+MOVES_A_TERMINAL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
 
 
 class Run(NamedTuple):
@@ -138,7 +139,9 @@ def cases(rng: random.Random, folder: Path, record: dict[str, Any]) -> Run:
     file = folder / "mine.py"
     file.write_bytes(broken_bytes(rng, CASES.encode()))
     own_cases.cache_clear()
-    return Run(["list", str(file) + rng.choice(("", "", "::right", "::", "::*", "::no")), *["--json"] * rng.randrange(2)])
+    return Run(
+        ["list", str(file) + rng.choice(("", "", "::right", "::", "::*", "::no")), *["--json"] * rng.randrange(2)]
+    )
 
 
 def words(rng: random.Random, folder: Path, record: dict[str, Any]) -> Run:
@@ -161,7 +164,9 @@ def streams(stdin: bytes) -> Iterator[tuple[io.BytesIO, io.BytesIO]]:
     """Put bytes in place of the three standard streams."""
     kept, out, err = (sys.stdin, sys.stdout, sys.stderr), io.BytesIO(), io.BytesIO()
     sys.stdin = io.TextIOWrapper(io.BufferedReader(io.BytesIO(stdin)))  # type: ignore[arg-type]
-    sys.stdout, sys.stderr = (io.TextIOWrapper(file, "utf-8", "backslashreplace", write_through=True) for file in (out, err))
+    sys.stdout, sys.stderr = (
+        io.TextIOWrapper(file, "utf-8", "backslashreplace", write_through=True) for file in (out, err)
+    )
     mine = sys.stdout, sys.stderr
     try:
         yield out, err
@@ -173,11 +178,11 @@ def streams(stdin: bytes) -> Iterator[tuple[io.BytesIO, io.BytesIO]]:
 
 
 def here(run: Run) -> Ended:
-    """Run it in this process; after `SECONDS` comes what Ctrl-C is."""
-    started = time.monotonic()
+    """Run it in this process; after `SECONDS` of the processor comes what Ctrl-C is."""
+    started = time.process_time()
     code: object = "returned"
     with streams(run.stdin) as (out, err):
-        signal.alarm(SECONDS)
+        watch(SECONDS)
         try:
             fogproof(run.words)
         except SystemExit as end:
@@ -185,10 +190,10 @@ def here(run: Run) -> Ended:
         except BaseException as error:
             code = repr(error)
         finally:
-            signal.alarm(0)
+            watch(0)
         sys.stdout.flush()
         sys.stderr.flush()
-        return Ended(code, out.getvalue(), err.getvalue(), time.monotonic() - started)
+        return Ended(code, out.getvalue(), err.getvalue(), time.process_time() - started)
 
 
 def apart(run: Run) -> Ended:
@@ -209,7 +214,7 @@ def fault_of(run: Run, end: Ended) -> str:
         return ""
     if end.code not in run.codes:
         return f"exit code {end.code}"
-    if "Traceback" in text or '"code": "internal"' in text:
+    if "Traceback" in text or "Warning:" in text or '"code": "internal"' in text:
         return "a fault of our own"
     if end.code == 2 and run.words[:1] != ["oracle"] and not end.err.strip():
         return "refused without a sentence"
@@ -226,7 +231,7 @@ def fuzz(runs: int, seed: int, folder: Path, record: dict[str, Any], every: int 
         raise KeyboardInterrupt
 
     rng, counts, faults = random.Random(seed), Counter[str](), []
-    before = signal.signal(signal.SIGALRM, stop)
+    before = {name: signal.signal(name, stop) for name in (signal.SIGPROF, signal.SIGALRM)}
     bytecode, sys.dont_write_bytecode = sys.dont_write_bytecode, True  # files change within a second
     path = list(sys.path)
     try:
@@ -236,7 +241,7 @@ def fuzz(runs: int, seed: int, folder: Path, record: dict[str, Any], every: int 
             end = here(run)
             counts[f"{kind} {end.code}"] += 1
             fault = fault_of(run, end)
-            if not fault and every and number % every == every - 1 and "\ud800" not in run.words:
+            if not fault and every and number % every == every - 1:
                 shutil.rmtree(folder / "study", ignore_errors=True)
                 again = apart(run)
                 counts["apart"] += 1
@@ -247,7 +252,8 @@ def fuzz(runs: int, seed: int, folder: Path, record: dict[str, Any], every: int 
                 told = (end.err[-300:], end.out[-300:], run.stdin[:500], file)
                 faults.append(f"{kind} {number}: {fault}: {run.words!r}: {told!r}")
     finally:
-        signal.signal(signal.SIGALRM, before)
+        for name, handler in before.items():
+            signal.signal(name, handler)
         sys.dont_write_bytecode, sys.path[:] = bytecode, path
     return counts, faults
 

@@ -5,8 +5,9 @@ python tools/fuzz_oracle.py --lines 1000 --seed 7
 python tools/fuzz_oracle.py --lines 100000 --mostly-right
 
 Nine of ten lines are examples of quantities with numbers, keys, kinds, shapes or bytes changed, the tenth is one whose
-answer is known; the other way round if they are to be mostly right. All must be answered, in order, the known ones rightly; there may be no NaN, no negative zero or error, and
-nothing on stderr. Lines that meet a fault of our own, code "internal", are printed; then the exit code is 1.
+answer is known; the other way round if they are to be mostly right. All must be answered, in order, the known ones rightly; there
+may be no NaN, no negative zero or error, and nothing on stderr. Lines that meet a fault of our own, code "internal", are printed;
+then the exit code is 1.
 """
 
 from __future__ import annotations

@@ -3,7 +3,6 @@
 import dataclasses
 import io
 import json
-import secrets
 import subprocess
 import sys
 import time
