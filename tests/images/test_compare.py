@@ -279,8 +279,8 @@ def test_variance_layers_scale_the_map(compared, truth, rng):
 
 def test_the_command_writes_a_verdict_a_page_and_maps(tmp_path, truth, rng):
     scene = tmp_path / "scene.toml"
-    lamp = Path(__file__).parents[2] / "scenes" / "images" / "lamp-in-fog.toml"
-    scene.write_text(lamp.read_text().replace("width = 64, height = 48", "width = 32, height = 24"))
+    lamp = Path(__file__).parents[2] / "scenes" / "images" / "lamp-inside-forward.toml"
+    scene.write_text(lamp.read_text().replace("width = 48, height = 36", "width = 32, height = 24"))
     out, folder = tmp_path / "a.exr", tmp_path / "report"
 
     def run(*words):

@@ -12,8 +12,8 @@ from fogproof.errors import FogproofError
 from fogproof.images.formats import format_of
 from fogproof.scene.files import read_image_scene
 
-LAMP = Path(__file__).parents[2] / "scenes" / "images" / "lamp-in-fog.toml"
-SMALL = LAMP.read_text().replace("width = 64, height = 48", "width = 6, height = 4")
+LAMP = Path(__file__).parents[2] / "scenes" / "images" / "lamp-inside-forward.toml"
+SMALL = LAMP.read_text().replace("width = 48, height = 36", "width = 6, height = 4")
 
 
 @pytest.fixture

@@ -24,6 +24,8 @@ _COMMANDS = {
     "check": "Judge somebody else's program over a pipe, or a file of samples.",
     "oracle": "Answer JSON requests with reference values and error bounds.",
     "compare": "Compare another renderer's image with the oracle.",
+    "export": "Write a scene for another renderer.",
+    "render": "Render scenes with another program, and compare each with the oracle.",
     "golden": "Write reference values with error bounds for offline test suites.",
     "plan": "Say which terms a scene needs, and which methods serve it.",
     "study": "Measure speed against error, resumable, on one core or a cluster.",

@@ -59,7 +59,7 @@ def command(
     Exit code: 0 not rejected, 1 rejected, 3 inconclusive.
 
     \b
-    Example:  fogproof compare render.exr scenes/images/lamp-in-fog.toml --report build/lamp
+    Example:  fogproof compare render.exr scenes/images/lamp-inside-forward.toml --report build/lamp
     """
     scene_file = images[-1] if images[-1].lower().endswith(SCENES) else None
     if folder is not None:

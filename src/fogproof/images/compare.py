@@ -19,7 +19,7 @@ from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError
 from fogproof.images.dependence import Dependence, dependence, in_cells
 from fogproof.images.faults import faults, notes
-from fogproof.images.picture import Picture, read_picture
+from fogproof.images.picture import RenderedImage, read_picture
 from fogproof.images.pooled import pooled_tests
 from fogproof.images.residuals import Residuals, residuals
 from fogproof.scene import ImageScene
@@ -42,7 +42,7 @@ class Comparison:
 
     verdict: Verdict
     ratios: tuple[tuple[str, float, EffectInterval], ...]
-    picture: Picture
+    picture: RenderedImage
     found: Residuals
     dependence: Dependence
     scene: ImageScene | None
@@ -188,7 +188,7 @@ def _checked(tolerance: float, alpha: float) -> tuple[float, float]:
 
 
 def _judge(
-    picture: Picture, found: Residuals, alpha: float, correlated: bool, brightest: float
+    picture: RenderedImage, found: Residuals, alpha: float, correlated: bool, brightest: float
 ) -> tuple[list[Finding], list[str], Dependence]:
     """Return findings, what was not checked, and how pixels depend on each other."""
     findings, unchecked = faults(picture, found, brightest, alpha), notes(picture)
@@ -228,7 +228,7 @@ def _exactly(found: Residuals) -> Finding:
     return Finding("pixels", "rejected", f"{message} most at row {row}, column {column}", effect=worst, cause="bias")
 
 
-def _by_render(picture: Picture, found: Residuals, alpha: float) -> list[Finding]:
+def _by_render(picture: RenderedImage, found: Residuals, alpha: float) -> list[Finding]:
     """Test the means of whole renders, whose scatter alone is known where pixels share random numbers."""
     n, channels = len(picture.renders), picture.renders.shape[-1]
     findings = []

@@ -7,14 +7,14 @@ import math
 import numpy as np
 
 from fogproof.checks.verdict import Finding
-from fogproof.images.picture import Picture
+from fogproof.images.picture import RenderedImage
 from fogproof.images.residuals import Residuals
 
 FINE = 1e-5
 """Relative rounding of storage up to which steps of 1/255 can be told."""
 
 
-def faults(picture: Picture, found: Residuals, brightest: float, alpha: float) -> list[Finding]:
+def faults(picture: RenderedImage, found: Residuals, brightest: float, alpha: float) -> list[Finding]:
     """Return what is wrong with an image at first sight.
 
     brightest  the largest value that one path can bring, where that is known; inf where not
@@ -26,7 +26,7 @@ def faults(picture: Picture, found: Residuals, brightest: float, alpha: float) -
     ]
 
 
-def notes(picture: Picture) -> list[str]:
+def notes(picture: RenderedImage) -> list[str]:
     """Return in words what is odd and no fault by itself."""
     negative = picture.value < 0
     if not negative.any():
@@ -38,7 +38,7 @@ def notes(picture: Picture) -> list[str]:
     ]
 
 
-def _numbers(picture: Picture) -> Finding | None:
+def _numbers(picture: RenderedImage) -> Finding | None:
     bad = ~np.isfinite(picture.renders)
     if not bad.any():
         return None
@@ -49,7 +49,7 @@ def _numbers(picture: Picture) -> Finding | None:
     return Finding("numbers", "rejected", message, effect=float(bad.mean()), cause="no-number")
 
 
-def _black(picture: Picture, found: Residuals, brightest: float, alpha: float) -> Finding | None:
+def _black(picture: RenderedImage, found: Residuals, brightest: float, alpha: float) -> Finding | None:
     mean = float(np.mean(found.reference[found.good])) if found.good.any() else 0.0
     if not found.good.any() or np.any(picture.renders[:, found.good]) or mean <= float(np.mean(found.allowed)):
         return None
@@ -60,7 +60,7 @@ def _black(picture: Picture, found: Residuals, brightest: float, alpha: float) -
     return Finding("light", "rejected", f"every pixel is 0, the mean of the reference is {mean:.6g}", cause="black")
 
 
-def _quantised(picture: Picture, found: Residuals) -> Finding | None:
+def _quantised(picture: RenderedImage, found: Residuals) -> Finding | None:
     value = picture.renders[:, found.good]
     if picture.rounding[0] > FINE or not value.size or value.min() < 0 or value.max() > 1 or len(np.unique(value)) < 3:
         return None
@@ -74,6 +74,6 @@ def _quantised(picture: Picture, found: Residuals) -> Finding | None:
     )
 
 
-def _place(index: int, picture: Picture) -> str:
+def _place(index: int, picture: RenderedImage) -> str:
     row, column, channel = np.unravel_index(index, picture.value.shape)
     return f"row {row}, column {column}, {picture.names[channel]}"

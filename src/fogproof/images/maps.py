@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fogproof.checks.statistics.tails import student_two_sided
-from fogproof.images.picture import Picture
+from fogproof.images.picture import RenderedImage
 from fogproof.images.residuals import Residuals
 
 SIDE = 8
@@ -47,7 +47,7 @@ class Maps:
     p_values: tuple[float, ...]
 
 
-def maps(picture: Picture, found: Residuals) -> Maps:
+def maps(picture: RenderedImage, found: Residuals) -> Maps:
     """Return the maps of a comparison."""
     d = found.difference
     rows, columns, channels = d.shape

@@ -17,7 +17,7 @@ ORDERS = (("R", "G", "B"), ("Y",), ("V",), ("L",), ("C0", "C1", "C2"))
 
 
 @dataclass(frozen=True)
-class Picture:
+class RenderedImage:
     """One or several independent renders of an image.
 
     renders   (n, rows, columns, channels) pixels
@@ -42,7 +42,7 @@ class Picture:
 
 def read_picture(
     paths: Sequence[str | Path], film: Film | None, channels: int | None, layer: str = "", samples: int | None = None
-) -> Picture:
+) -> RenderedImage:
     """Read one image, or several independent renders of it.
 
     film      the film it must have, or None; an image of the whole film is cropped
@@ -82,7 +82,7 @@ def read_picture(
     stated = None
     if len(variances) == len(parts):
         stated = np.mean(variances, axis=0)[..., : renders.shape[-1]] / len(parts)
-    return Picture(renders, stated, max(roundings), names, tuple(str(path) for path in paths))
+    return RenderedImage(renders, stated, max(roundings), names, tuple(str(path) for path in paths))
 
 
 def _names(path: Path, found: dict[str, np.ndarray], channels: int | None, layer: str) -> tuple[str, ...]:

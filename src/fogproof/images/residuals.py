@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fogproof.images.picture import Picture
+from fogproof.images.picture import RenderedImage
 
 DITHERED = 2.0
 """Half units in the last place by which a pixel is off, beyond which noise has made its rounding random."""
@@ -28,7 +28,7 @@ class Residuals:
     good: np.ndarray
 
 
-def residuals(picture: Picture, value: np.ndarray, error: np.ndarray, tolerance: float) -> Residuals:
+def residuals(picture: RenderedImage, value: np.ndarray, error: np.ndarray, tolerance: float) -> Residuals:
     """Return the differences from a reference (rows, columns, channels) known to within `error`.
 
     tolerance  relative error that does not matter

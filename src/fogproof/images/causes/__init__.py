@@ -6,6 +6,6 @@ and among those that do the simplest wins. What is said is its fit and how much 
 
 from __future__ import annotations
 
-from fogproof.images.causes.diagnose import diagnose
+from fogproof.images.causes.explanation import diagnose
 
 __all__ = ["diagnose"]

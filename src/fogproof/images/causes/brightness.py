@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from fogproof.images.causes.hypothesis import Hypothesis, Sight, fixed
+from fogproof.images.causes.image_cause import ImageCause, Sight, fixed
 
 
-def hypotheses(sight: Sight) -> Iterator[Hypothesis]:
+def hypotheses(sight: Sight) -> Iterator[ImageCause]:
     """Yield curves of brightness."""
     reference = sight.reference
     top, mean = float(np.max(reference)), float(np.mean(reference))
@@ -17,9 +17,9 @@ def hypotheses(sight: Sight) -> Iterator[Hypothesis]:
         return
     yield fixed("tone-curve", lambda: srgb(reference), "the pixels are sRGB-encoded, not linear")
     yield fixed("tone-curve", lambda: reference / (1 + reference), "the pixels are x/(1 + x), Reinhard's tone curve")
-    yield Hypothesis("added", lambda p: reference + p[0], lambda p: f"{p[0]:+.4g} is added to every pixel", ((0.0,),))
+    yield ImageCause("added", lambda p: reference + p[0], lambda p: f"{p[0]:+.4g} is added to every pixel", ((0.0,),))
     if np.ptp(reference) > 0:
-        yield Hypothesis(
+        yield ImageCause(
             "tone-curve",
             lambda p: np.maximum(reference, 0) ** p[0],
             lambda p: (
@@ -30,7 +30,7 @@ def hypotheses(sight: Sight) -> Iterator[Hypothesis]:
             0.05,
             20,
         )
-        yield Hypothesis(
+        yield ImageCause(
             "clamped",
             lambda p: np.minimum(reference, p[0]),
             lambda p: f"pixels are cut off at {p[0]:.4g}",

@@ -9,22 +9,22 @@ from functools import partial
 
 import numpy as np
 
-from fogproof.images.causes.hypothesis import Hypothesis, Sight, fixed
+from fogproof.images.causes.image_cause import ImageCause, Sight, fixed
 
 
-def hypotheses(sight: Sight) -> Iterator[Hypothesis]:
+def hypotheses(sight: Sight) -> Iterator[ImageCause]:
     """Yield factors; a constant with a name is tried as it is, and then any."""
     reference = sight.reference
     for name, factor in constants(sight).items():
         words = f"the image is {name} = {factor:.6g} times the reference"
         yield fixed("factor", partial(np.multiply, reference, factor), words)
     words = "the image is {:.6g} times the reference"
-    yield Hypothesis("factor", lambda p: p[0] * reference, lambda p: words.format(p[0]), ((1.0,),))
+    yield ImageCause("factor", lambda p: p[0] * reference, lambda p: words.format(p[0]), ((1.0,),))
     if reference.shape[1] > 1:
         yield from _channels(sight)
 
 
-def _channels(sight: Sight) -> Iterator[Hypothesis]:
+def _channels(sight: Sight) -> Iterator[ImageCause]:
     reference, names, count = sight.reference, sight.picture.names, sight.reference.shape[1]
     for c in range(count):
 
@@ -34,7 +34,7 @@ def _channels(sight: Sight) -> Iterator[Hypothesis]:
         def words(p: np.ndarray, c: int = c) -> str:
             return f"channel {names[c]} is {p[0]:.6g} times the reference"
 
-        yield Hypothesis("channel", scaled, words, ((1.0,),))
+        yield ImageCause("channel", scaled, words, ((1.0,),))
     for order in itertools.permutations(range(count)) if count <= 3 else ():
         if list(order) != sorted(order):
             told = ", ".join(names[i] for i in order)

@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from fogproof.images.causes.hypothesis import Hypothesis, Sight, fixed
+from fogproof.images.causes.image_cause import ImageCause, Sight, fixed
 
 AXES = ("x", "y", "smaller", "larger", "diagonal")
 
 
-def hypotheses(sight: Sight) -> Iterator[Hypothesis]:
+def hypotheses(sight: Sight) -> Iterator[ImageCause]:
     """Yield what is wrong with the film."""
     whole, rows, columns = sight.found.reference, sight.rows, sight.columns
     if not np.ptp(whole) > 0:
@@ -28,7 +28,7 @@ def hypotheses(sight: Sight) -> Iterator[Hypothesis]:
         flipped["transposed"] = (np.swapaxes(whole, 0, 1), "rows and columns are exchanged")
     for cause, (other, words) in flipped.items():
         yield fixed(cause, partial(_at, other, rows, columns), words)
-    yield Hypothesis(
+    yield ImageCause(
         "shifted",
         lambda p: sight.instead(sight.scene, -p[0], -p[1]),
         lambda p: f"the image is shifted by {p[0]:+.3g} pixels to the right and {p[1]:+.3g} downwards",
@@ -39,7 +39,7 @@ def hypotheses(sight: Sight) -> Iterator[Hypothesis]:
     camera: Any = sight.scene.camera
     if hasattr(camera, "fov"):
         yield from _angles(sight, camera)
-    yield Hypothesis(
+    yield ImageCause(
         "filter",
         lambda p: _blurred(whole, float(p[0]))[rows, columns],
         lambda p: f"the image is blurred: a filter of standard deviation {p[0]:.3g} pixels on top of the box",
@@ -49,7 +49,7 @@ def hypotheses(sight: Sight) -> Iterator[Hypothesis]:
     )
 
 
-def _angles(sight: Sight, camera: Any) -> Iterator[Hypothesis]:
+def _angles(sight: Sight, camera: Any) -> Iterator[ImageCause]:
     for axis in AXES:
         other = replace(camera, fov_axis=axis)
         if abs(other.half_width / camera.half_width - 1) > 1e-9:
@@ -63,7 +63,7 @@ def _angles(sight: Sight, camera: Any) -> Iterator[Hypothesis]:
     def words(p: np.ndarray) -> str:
         return f"the image shows {p[0]:.4g} times the width of the film"
 
-    yield Hypothesis("zoom", zoomed, words, ((0.9,), (1.1,)), 0.1, 10)
+    yield ImageCause("zoom", zoomed, words, ((0.9,), (1.1,)), 0.1, 10)
 
 
 def _at(image: np.ndarray, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fogproof.errors import FogproofError
-from fogproof.images.causes.hypothesis import Hypothesis, Sight
+from fogproof.images.causes.image_cause import ImageCause, Sight
 
 WINDOW = 9
 """Pixels along the side of the squares over which noise is averaged."""
@@ -20,10 +20,10 @@ MIDDLES = 0.02
 
 
 @dataclass(frozen=True)
-class Fit:
+class CauseFit:
     """A fitted hypothesis: parameters, their standard errors, and the sum of squares left, in units of the noise."""
 
-    hypothesis: Hypothesis
+    hypothesis: ImageCause
     parameters: np.ndarray
     errors: np.ndarray
     left: float
@@ -65,7 +65,7 @@ def _third_differences(sight: Sight) -> np.ndarray:
     return square / max(used, 1)
 
 
-def fit(sight: Sight, hypothesis: Hypothesis, noise: np.ndarray) -> Fit | None:
+def fit(sight: Sight, hypothesis: ImageCause, noise: np.ndarray) -> CauseFit | None:
     """Return the best fit, or None where the hypothesis cannot be evaluated."""
     from scipy.optimize import least_squares
 
@@ -76,7 +76,7 @@ def fit(sight: Sight, hypothesis: Hypothesis, noise: np.ndarray) -> Fit | None:
     try:
         with np.errstate(all="ignore"):
             if not hypothesis.starts:
-                return Fit(hypothesis, np.zeros(0), np.zeros(0), float(np.sum(off(np.zeros(0)) ** 2)))
+                return CauseFit(hypothesis, np.zeros(0), np.zeros(0), float(np.sum(off(np.zeros(0)) ** 2)))
             starts = sorted(hypothesis.starts, key=lambda start: float(np.sum(off(np.array(start, float)) ** 2)))
             fits = [
                 least_squares(off, np.array(start, float), bounds=(hypothesis.low, hypothesis.high), max_nfev=STEPS)
@@ -86,4 +86,4 @@ def fit(sight: Sight, hypothesis: Hypothesis, noise: np.ndarray) -> Fit | None:
             spread = np.linalg.pinv(best.jac.T @ best.jac)
     except (FogproofError, np.linalg.LinAlgError, ValueError):
         return None
-    return Fit(hypothesis, best.x, np.sqrt(np.maximum(np.diag(spread), 0)), 2 * float(best.cost))
+    return CauseFit(hypothesis, best.x, np.sqrt(np.maximum(np.diag(spread), 0)), 2 * float(best.cost))

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from fogproof.analytic.phase.functions import phase_values
-from fogproof.images.causes.hypothesis import Hypothesis, Sight, fixed
+from fogproof.images.causes.image_cause import ImageCause, Sight, fixed
 from fogproof.scene import Ray
 from fogproof.scene.kinds import given
 from fogproof.scene.shapes import EVERYWHERE
@@ -21,7 +21,7 @@ from fogproof.scene.shapes import EVERYWHERE
 NODES = 96
 
 
-def hypotheses(sight: Sight) -> Iterator[Hypothesis]:
+def hypotheses(sight: Sight) -> Iterator[ImageCause]:
     """Yield single scattering with wrong lengths in its exponentials, and background with depth for distance."""
     scene = sight.scene
     position = getattr(scene.light, "position", None)

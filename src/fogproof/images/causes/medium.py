@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from fogproof.images.causes.hypothesis import Hypothesis, Sight, fixed
+from fogproof.images.causes.image_cause import ImageCause, Sight, fixed
 from fogproof.scene import CornetteShanks, HenyeyGreenstein, Isotropic, Rayleigh, Schlick
 
 SCAN = ((-0.9,), (-0.7,), (-0.5,), (-0.3,), (-0.1,), (0.1,), (0.3,), (0.5,), (0.7,), (0.9,))
 
 
-def hypotheses(sight: Sight) -> Iterator[Hypothesis]:
+def hypotheses(sight: Sight) -> Iterator[ImageCause]:
     """Yield scenes with another medium."""
     scene = sight.scene
     medium: Any = scene.medium
@@ -36,14 +36,14 @@ def hypotheses(sight: Sight) -> Iterator[Hypothesis]:
     def words(p: np.ndarray) -> str:
         return f"the medium is {p[0]:.5g} times as dense"
 
-    yield Hypothesis("density", denser, words, ((0.5,), (0.9,), (1.1,), (2.0,)), 1e-3, 1e3)
+    yield ImageCause("density", denser, words, ((0.5,), (0.9,), (1.1,), (2.0,)), 1e-3, 1e3)
     yield from _near(sight)
 
 
-def _near(sight: Sight) -> Iterator[Hypothesis]:
+def _near(sight: Sight) -> Iterator[ImageCause]:
     reach = sight.scene.camera.wall
     scale = reach if np.isfinite(reach) else 10.0
-    yield Hypothesis(
+    yield ImageCause(
         "near-clip",
         lambda p: sight.instead(sight.scene, near=float(p[0])),
         lambda p: f"rays start {p[0]:.4g} m too late: a near clip",
@@ -53,7 +53,7 @@ def _near(sight: Sight) -> Iterator[Hypothesis]:
     )
 
 
-def _phases(sight: Sight) -> Iterator[Hypothesis]:
+def _phases(sight: Sight) -> Iterator[ImageCause]:
     medium: Any = sight.scene.medium
     phase = medium.phase
     g = float(getattr(phase, "g", 0.0))
@@ -81,8 +81,8 @@ def _phases(sight: Sight) -> Iterator[Hypothesis]:
         own = f"{g:g}" if g else type(phase).__name__
         return f"{'g' if g else 'Henyey-Greenstein with g'} = {p[0]:.4g} stands for {own}"
 
-    yield Hypothesis("wrong-g", lambda p: seen_by(HenyeyGreenstein(float(p[0]))), fitted, (*SCAN, (g,)), -0.99, 0.99)
-    yield Hypothesis(
+    yield ImageCause("wrong-g", lambda p: seen_by(HenyeyGreenstein(float(p[0]))), fitted, (*SCAN, (g,)), -0.99, 0.99)
+    yield ImageCause(
         "schlick-for-henyey-greenstein",
         lambda p: seen_by(Schlick(float(p[0]))),
         lambda p: f"Schlick's approximation with k = {p[0]:.4g} stands for {type(phase).__name__}",
@@ -92,7 +92,7 @@ def _phases(sight: Sight) -> Iterator[Hypothesis]:
     )
 
 
-def _with(sight: Sight, cause: str, medium: Any, words: str) -> Hypothesis:
+def _with(sight: Sight, cause: str, medium: Any, words: str) -> ImageCause:
     other = replace(sight.scene, medium=medium)
     return fixed(cause, partial(sight.instead, other), words)
 

@@ -16,7 +16,7 @@ import numpy as np
 from fogproof.analytic import phase_pdf, single_scattering
 from fogproof.analytic.geometry.convex_shapes import chord
 from fogproof.analytic.geometry.flat_rays import FlatRays
-from fogproof.images.causes.hypothesis import Hypothesis, Sight, fixed
+from fogproof.images.causes.image_cause import ImageCause, Sight, fixed
 from fogproof.scene import Ray
 from fogproof.scene.kinds import given
 
@@ -24,7 +24,7 @@ PATHS = 1 << 15
 DEGREE = 4
 
 
-def hypotheses(sight: Sight) -> Iterator[Hypothesis]:
+def hypotheses(sight: Sight) -> Iterator[ImageCause]:
     """Yield the image with a second order of scattering, as much of it as fits."""
     medium: Any = sight.scene.medium
     uniform = hasattr(medium, "mean_free_path")
@@ -41,7 +41,7 @@ def hypotheses(sight: Sight) -> Iterator[Hypothesis]:
         return f"{p[0]:.2g} times the light that scatters twice is there"
 
     yield fixed("one-order-too-many", lambda: more(1.0), "light that scattered twice is there")
-    yield Hypothesis("one-order-too-many", lambda p: more(float(p[0])), words, ((1.0,),), 0.0, 20.0)
+    yield ImageCause("one-order-too-many", lambda p: more(float(p[0])), words, ((1.0,),), 0.0, 20.0)
 
 
 def _second_order(sight: Sight) -> np.ndarray | None:

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from fogproof.images.causes.hypothesis import Hypothesis, Sight, fixed
+from fogproof.images.causes.image_cause import ImageCause, Sight, fixed
 
 
-def hypotheses(sight: Sight) -> Iterator[Hypothesis]:
+def hypotheses(sight: Sight) -> Iterator[ImageCause]:
     """Yield the scene without one of its terms."""
     scene = sight.scene
     medium: Any = scene.medium

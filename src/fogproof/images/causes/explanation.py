@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fogproof.images.causes import brightness, factors, film, lengths, medium, orders, terms
-from fogproof.images.causes.fit import Fit, fit, noise_of
-from fogproof.images.causes.hypothesis import Sight
-from fogproof.images.picture import Picture
+from fogproof.images.causes.fit import CauseFit, fit, noise_of
+from fogproof.images.causes.image_cause import Sight
+from fogproof.images.picture import RenderedImage
 from fogproof.images.residuals import Residuals
 from fogproof.scene import ImageScene
 
@@ -46,7 +46,7 @@ PRICE = 12.0
 """What a parameter must gain, in squares of the noise, to be worth it."""
 
 
-def diagnose(scene: ImageScene, picture: Picture, found: Residuals) -> tuple[str, str] | None:
+def diagnose(scene: ImageScene, picture: RenderedImage, found: Residuals) -> tuple[str, str] | None:
     """Return the name of the likely cause and a sentence with its fit, or None where no hypothesis explains the misfit."""
     sight = _sight(scene, picture, found)
     if sight is None:
@@ -71,7 +71,7 @@ class Choice:
     clean: bool
 
 
-def _choice(sight: Sight, fits: list[Fit], noise: np.ndarray, nothing: float) -> Choice | None:
+def _choice(sight: Sight, fits: list[CauseFit], noise: np.ndarray, nothing: float) -> Choice | None:
     """Return the best of the fits, if any explains the misfit."""
     count = sight.image.size
     if not fits:
@@ -103,7 +103,7 @@ def _choice(sight: Sight, fits: list[Fit], noise: np.ndarray, nothing: float) ->
     return Choice(best.hypothesis.cause, words, explained, clean)
 
 
-def _fits(sight: Sight, noise: np.ndarray, fast: bool) -> Iterator[Fit]:
+def _fits(sight: Sight, noise: np.ndarray, fast: bool) -> Iterator[CauseFit]:
     """Yield the fits of hypotheses that cost little, or of those whose parameters need many evaluations of the scene."""
     for module in (factors, film, terms, medium, lengths, orders, brightness):
         for hypothesis in module.hypotheses(sight):
@@ -113,13 +113,13 @@ def _fits(sight: Sight, noise: np.ndarray, fast: bool) -> Iterator[Fit]:
                     yield found
 
 
-def _explained(one: Fit, nothing: float, count: int) -> float:
+def _explained(one: CauseFit, nothing: float, count: int) -> float:
     """Return the share of the misfit beyond noise that is explained."""
     noise = min(float(count), one.left)
     return (nothing - one.left) / (nothing - noise) if nothing > noise else 0.0
 
 
-def _sight(scene: ImageScene, picture: Picture, found: Residuals) -> Sight | None:
+def _sight(scene: ImageScene, picture: RenderedImage, found: Residuals) -> Sight | None:
     """Choose pixels: evenly, where the reference is known well, and as many as can be evaluated quickly."""
     known = found.good & (found.allowed <= 0.01 * np.abs(found.reference) + 1e-300).all(axis=2)
     smooth = known & ~_rough(found.reference)

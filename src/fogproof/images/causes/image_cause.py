@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from fogproof.analytic.images.seen import seen
-from fogproof.images.picture import Picture
+from fogproof.images.picture import RenderedImage
 from fogproof.images.residuals import Residuals
 from fogproof.scene import ImageScene
 from fogproof.scene.kinds import given
@@ -19,7 +19,7 @@ Predict = Callable[[np.ndarray], np.ndarray]
 
 
 @dataclass(frozen=True)
-class Hypothesis:
+class ImageCause:
     """A cause.
 
     cause    its name
@@ -37,9 +37,9 @@ class Hypothesis:
     high: float = np.inf
 
 
-def fixed(cause: str, make: Callable[[], np.ndarray], words: str) -> Hypothesis:
+def fixed(cause: str, make: Callable[[], np.ndarray], words: str) -> ImageCause:
     """Return a cause without parameters."""
-    return Hypothesis(cause, lambda _: make(), lambda _: words)
+    return ImageCause(cause, lambda _: make(), lambda _: words)
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Sight:
     """
 
     scene: ImageScene
-    picture: Picture
+    picture: RenderedImage
     found: Residuals
     rows: np.ndarray
     columns: np.ndarray
