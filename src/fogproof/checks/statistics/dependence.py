@@ -77,7 +77,8 @@ class Succession:
         """Return the record after one more batch (n, channels), drawn in calls of these sizes."""
         large, prints = np.ascontiguousarray((x > self.threshold).T), fingerprints(x)
         pairs, both = self.pairs.copy(), self.both + np.zeros((1, x.shape[1]), dtype=np.int64)
-        means, windows, counts = [], [], []
+        means, windows = [], []
+        counts: list[np.ndarray] = []
         alike, start = self.alike, 0
         for size in sizes:
             here = slice(start, start + size)
