@@ -8,7 +8,7 @@ BIN    := $(VENV)/bin
 export OPENBLAS_NUM_THREADS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help verify gallery study test lint format calibrate field-bugs repeat families oracle-docs fuzz-oracle oracle-hard kill-study torture golden bench clean
+.PHONY: help verify gallery study test lint format calibrate field-bugs images repeat families oracle-docs fuzz-oracle oracle-hard kill-study torture golden bench clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -40,6 +40,12 @@ field-bugs: $(VENV)/.installed-test  ## bugs that shipped elsewhere, planted: re
 
 repeat: $(VENV)/.installed-test  ## 20 runs of the catalogue with fresh seeds: no false alarm
 	$(BIN)/python tools/repeat_verify.py
+
+images: $(VENV)/.installed-test  ## comparisons of images: false alarms, planted errors, size, broken files; an hour
+	$(BIN)/python tools/image_promises.py planted
+	$(BIN)/python tools/image_promises.py fuzz 2000
+	$(BIN)/python tools/image_promises.py size
+	$(BIN)/python tools/image_promises.py false-alarms 1000
 
 families: $(VENV)/.installed-test  ## errors in a corner of a family's parameters: found and shrunk; right families: none rejected
 	$(BIN)/python tools/families.py

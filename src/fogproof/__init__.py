@@ -72,6 +72,7 @@ if TYPE_CHECKING:
         samples_for,
     )
     from fogproof.gradient_check import check_gradient
+    from fogproof.images.compare import compare_image, compare_pictures
     from fogproof.runs import Run
     from fogproof.scene.files import read_image_scene, read_scene
     from fogproof.scene.volume_files import read_voxel_grid
@@ -133,6 +134,8 @@ __all__ = [
     "check_sampler",
     "check_streams",
     "compare_estimators",
+    "compare_image",
+    "compare_pictures",
     "estimator_for",
     "fresh_seed",
     "read_image_scene",
@@ -169,6 +172,8 @@ _LAZY = {
     "samples_for": "fogproof.checks",
     "check_gradient": "fogproof.gradient_check",
     "Run": "fogproof.runs",
+    "compare_image": "fogproof.images.compare",
+    "compare_pictures": "fogproof.images.compare",
     "estimator_for": "fogproof.scene_estimator",
     "read_image_scene": "fogproof.scene.files",
     "read_scene": "fogproof.scene.files",

@@ -135,7 +135,7 @@ def compare_pictures(
             good[..., None], np.where(np.abs(gap) > 2 * rounding, 0, rounding) + tolerance * np.abs(b.value), 0.0
         )
     found = Residuals(gap, allowed, flat, good)
-    findings, unchecked, how = _judge(a, found, alpha, correlated, float(np.nanmax(b.value)))
+    findings, unchecked, how = _judge(a, found, alpha, correlated, float(np.nanmax(b.value)), positive=False)
     settings = {"tolerance": tolerance, "images": [*a.paths, *b.paths]}
     rejected = any(finding.outcome == "rejected" for finding in findings)
     verdict = Verdict(
@@ -188,7 +188,7 @@ def _checked(tolerance: float, alpha: float) -> tuple[float, float]:
 
 
 def _judge(
-    picture: RenderedImage, found: Residuals, alpha: float, correlated: bool, brightest: float
+    picture: RenderedImage, found: Residuals, alpha: float, correlated: bool, brightest: float, positive: bool = True
 ) -> tuple[list[Finding], list[str], Dependence]:
     """Return findings, what was not checked, and how pixels depend on each other."""
     findings, unchecked = faults(picture, found, brightest, alpha), notes(picture)
@@ -209,7 +209,9 @@ def _judge(
     elif how.kind == "shared":
         findings += _by_render(picture, found, alpha)
     else:
-        pooled, more = pooled_tests(in_cells(found) if how.kind == "neighbours" else found, alpha, picture.names)
+        pooled, more = pooled_tests(
+            in_cells(found) if how.kind == "neighbours" else found, alpha, picture.names, positive
+        )
         findings += pooled
         unchecked += more
     return findings, unchecked, how

@@ -35,8 +35,13 @@ class Pool:
     channel: int
 
 
-def pooled_tests(found: Residuals, alpha: float, names: tuple[str, ...]) -> tuple[list[Finding], list[str]]:
-    """Return one finding a family, and in words what could not be tested."""
+def pooled_tests(
+    found: Residuals, alpha: float, names: tuple[str, ...], positive: bool = True
+) -> tuple[list[Finding], list[str]]:
+    """Return one finding a family, and in words what could not be tested.
+
+    positive  reference and difference add up to radiances, which are never negative; those of two images do not
+    """
     findings: list[Finding] = []
     unchecked: list[str] = []
     channels = range(found.difference.shape[2])
@@ -56,7 +61,7 @@ def pooled_tests(found: Residuals, alpha: float, names: tuple[str, ...]) -> tupl
     contrasts = [pool for channel in channels for pool in _contrasts(found, channel, names)]
     tested = [_test(found, pool, SHARES["contrasts"] * alpha / len(contrasts)) for pool in contrasts]
     _add(findings, unchecked, "contrasts", tested)
-    bets = [_bet(found, c, SHARES["bets"] * alpha / len(channels), names) for c in channels]
+    bets = [_bet(found, c, SHARES["bets"] * alpha / len(channels), names) for c in channels] if positive else []
     findings += [bet for bet in bets if bet is not None and bet.outcome == "rejected"]
     return findings, unchecked
 

@@ -72,9 +72,9 @@ def _phases(sight: Sight) -> Iterator[ImageCause]:
             words += f" stands for Henyey-Greenstein with g = {g:g}"
             yield fixed("schlick-for-henyey-greenstein", partial(seen_by, Schlick(sign * k)), words)
         for other in (CornetteShanks(g), HenyeyGreenstein(g)):
-            if type(other) is not type(phase):
+            if other != phase:
                 yield fixed("wrong-phase-function", partial(seen_by, other), f"{type(other).__name__} with g = {g:g}")
-    if type(phase) is not Rayleigh:
+    if phase != Rayleigh():
         yield fixed("wrong-phase-function", partial(seen_by, Rayleigh()), "Rayleigh's phase function")
 
     def fitted(p: np.ndarray) -> str:
