@@ -12,7 +12,7 @@ from fogproof.study.batches import BatchResult, run_batch
 from fogproof.study.cells import Cell
 from fogproof.study.executors import ClusterError, Workers
 from fogproof.study.files import Study
-from fogproof.study.plan import Batch
+from fogproof.study.plan import Batch, Batches
 from fogproof.study.stored_batches import Store
 
 ATTEMPTS = 3
@@ -45,7 +45,7 @@ class _Work:
 def draw_missing(
     study: Study,
     cells: Sequence[Cell],
-    batches: Sequence[Batch],
+    batches: Batches,
     store: Store,
     pool: Workers,
     advance: Advance = lambda batch, result: None,
@@ -59,7 +59,7 @@ def draw_missing(
     draw     what a worker calls
     """
     done = store.done()
-    work = _Work(deque(batch for batch in batches if batch.number not in done))
+    work = _Work(deque(batch for batch in batches.in_turn() if batch.number not in done))
     try:
         while work.waiting or work.suspects or work.running:
             while (batch := work.next(pool.slots)) is not None:
