@@ -188,7 +188,7 @@ def study(seed: int, laws: tuple[Synthetic, ...] = LAWS, replicates: int = 24) -
         store._batches, store._identities = plan_of, [f"{k}" for k in range(len(plan_of.stretches))]
         store._keys = [k << 40 for k in range(len(plan_of.stretches))]
         with open_workers("threads", 1) as pool:
-            draw_missing(plan, cells, plan_of, store, pool, draw=draw)
+            draw_missing(plan, cells, plan_of.in_turn(), store, pool, draw=draw)
         return make_record(plan, cells, plan_of, store, Circumstances("", "", 0.0, "threads", 1))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import concurrent.futures
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError, Future
 from dataclasses import dataclass, field
 
@@ -12,7 +12,7 @@ from fogproof.study.batches import BatchResult, run_batch
 from fogproof.study.cells import Cell
 from fogproof.study.executors import ClusterError, Workers
 from fogproof.study.files import Study
-from fogproof.study.plan import Batch, Batches
+from fogproof.study.plan import Batch
 from fogproof.study.stored_batches import Store
 
 ATTEMPTS = 3
@@ -45,13 +45,13 @@ class _Work:
 def draw_missing(
     study: Study,
     cells: Sequence[Cell],
-    batches: Batches,
+    batches: Iterable[Batch],
     store: Store,
     pool: Workers,
     advance: Advance = lambda batch, result: None,
     draw: Draw = run_batch,
 ) -> None:
-    """Draw every batch that is not in the store yet.
+    """Draw every batch that is not in the store yet, in the order given.
 
     On KeyboardInterrupt no more is handed out, what is under way is still stored, and the interrupt goes on.
 
@@ -59,7 +59,7 @@ def draw_missing(
     draw     what a worker calls
     """
     done = store.done()
-    work = _Work(deque(batch for batch in batches.in_turn() if batch.number not in done))
+    work = _Work(deque(batch for batch in batches if batch.number not in done))
     try:
         while work.waiting or work.suspects or work.running:
             while (batch := work.next(pool.slots)) is not None:
