@@ -14,7 +14,7 @@ from fogproof.contracts import Reference
 from fogproof.study.aggregate import Level, pooled
 from fogproof.study.cells import Cell
 from fogproof.study.convergence import Estimate, Floor, Order, Z, floor_of, order_of, rmse
-from fogproof.study.judgement import Judged, excess, inherited, judge, resolution_of
+from fogproof.study.judgement import Judged, excess, inherited, judge, out_of_range, resolution_of
 from fogproof.study.methods.table import kind_of, options_of
 from fogproof.study.reaching import TARGETS, Curve, Reach, reach_of, variance_law
 from fogproof.study.speed import time_of
@@ -52,6 +52,7 @@ def measure(cell: Cell, levels: Sequence[Level], alpha: float, twin: Measured | 
     variance = cell.method.variance(cell.scene)
     judged = judge(cell, levels, variance, alpha)
     judged = judged if twin is None else inherited(judged, twin.judged)
+    levels = [] if out_of_range(cell, levels) else levels  # what cannot be summed cannot be measured
     value, error = float(cell.reference.value), float(cell.reference.error)
     data = pooled(np.concatenate([level.rows for level in levels])) if levels else Moments()
     errors = [_rmse(cell, level, data, error) for level in levels]
