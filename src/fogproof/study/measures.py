@@ -16,7 +16,7 @@ from fogproof.study.cells import Cell
 from fogproof.study.convergence import Estimate, Floor, Order, Z, floor_of, order_of, rmse
 from fogproof.study.judgement import Judged, excess, inherited, judge, out_of_range, resolution_of
 from fogproof.study.methods.table import kind_of, options_of
-from fogproof.study.reaching import TARGETS, Curve, Reach, reach_of, variance_law
+from fogproof.study.reaching import TARGETS, ErrorOverTime, Reach, reach_of, variance_law
 from fogproof.study.speed import time_of
 
 _NO_LAW = 0.001
@@ -192,7 +192,7 @@ def _curve(
     variance: Reference | None,
     judged: Judged,
     stays: float,
-) -> Curve | None:
+) -> ErrorOverTime | None:
     """Return the error against time; None where nothing was drawn, or not every realisation is a number."""
     if not levels or any(level.bad for level in levels):
         return None
@@ -209,7 +209,7 @@ def _curve(
             float(variance.value) if exact and variance is not None else data.variance, _spread(data), exact
         )
         law = law if data.m2 > 0 and _follows(law.value, cell, levels, errors, data) else None
-    return Curve(counts, errors, times, law, stays)
+    return ErrorOverTime(counts, errors, times, law, stays)
 
 
 def _stays(judged: Judged, bias: Estimate | None, floor: Floor | None) -> float:
@@ -231,7 +231,7 @@ def _follows(variance: float, cell: Cell, levels: Sequence[Level], errors: Seque
     return 2 * min(float(chdtr(total, statistic)), float(chdtrc(total, statistic))) >= _NO_LAW
 
 
-def _reaches(curve: Curve, value: float, hidden: float) -> tuple[Reach, ...]:
+def _reaches(curve: ErrorOverTime, value: float, hidden: float) -> tuple[Reach, ...]:
     """Return the times to `TARGETS`; () if the reference is 0 or known too coarsely."""
     if not value > 0 or hidden > 0.1 * TARGETS[-1] * value:
         return ()

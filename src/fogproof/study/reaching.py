@@ -22,7 +22,7 @@ How = Literal["measured", "less-than", "extrapolated", "not-reached", "never"]
 
 
 @dataclass(frozen=True, eq=False)
-class Curve:
+class ErrorOverTime:
     """Error against time of one estimator.
 
     counts    (levels,) samples or steps, rising
@@ -91,7 +91,7 @@ def _wider(time: Estimate, noise: tuple[float, float]) -> tuple[float, float]:
     return math.hypot(below, noise[0]), math.hypot(above, noise[1])
 
 
-def reach_of(curve: Curve, target: float, error: float, hidden: float = 0.0) -> Reach:
+def reach_of(curve: ErrorOverTime, target: float, error: float, hidden: float = 0.0) -> Reach:
     """Return when a curve reaches the error `target`, in the unit of the quantity; `error` is the same relative to the reference.
 
     hidden  what the reference may be off
@@ -118,7 +118,7 @@ def reach_of(curve: Curve, target: float, error: float, hidden: float = 0.0) -> 
     return Reach(error, "measured", "", at, _times_at(curve, at), _noise(curve, first - 1, first, share))
 
 
-def _noise(curve: Curve, a: int, b: int, share: float) -> tuple[float, float]:
+def _noise(curve: ErrorOverTime, a: int, b: int, share: float) -> tuple[float, float]:
     """Return how far the errors' intervals reach in the logarithm of the time, `share` of the way from one count to another.
 
     Between them the error falls like a power of the count; one that is larger than measured needs more, and the time of those.
@@ -133,7 +133,7 @@ def _noise(curve: Curve, a: int, b: int, share: float) -> tuple[float, float]:
     return (needs * below, needs * above) if needs else (0.0, 0.0)
 
 
-def _by_the_law(curve: Curve, law: Estimate, target: float, error: float, hidden: float) -> Reach:
+def _by_the_law(curve: ErrorOverTime, law: Estimate, target: float, error: float, hidden: float) -> Reach:
     needed = law.value / target**2
     if needed <= curve.counts[0]:
         return Reach(error, "less-than", "", float(curve.counts[0]), curve.times[0])
@@ -146,13 +146,13 @@ def _by_the_law(curve: Curve, law: Estimate, target: float, error: float, hidden
     return Reach(error, how, "", needed, times, (below, above))
 
 
-def _growth(curve: Curve, count: float) -> float:
+def _growth(curve: ErrorOverTime, count: float) -> float:
     """Return the power with which the time grows around a count."""
     a, b = (_times_at(curve, count * factor).estimate.value for factor in (0.99, 1.01))
     return max(math.log(b / a) / math.log(1.01 / 0.99), 0.0) if a > 0 and b > 0 else 1.0
 
 
-def _times_at(curve: Curve, count: float) -> Times:
+def _times_at(curve: ErrorOverTime, count: float) -> Times:
     """Return the time of an estimate at a count: a fixed cost and so much a sample, between two counts and beyond the last."""
     counts = curve.counts
     if len(counts) == 1 or count in (counts[0], counts[-1]):
