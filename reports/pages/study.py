@@ -131,9 +131,10 @@ def _figures(scene: SceneRecord, confidence: float) -> Iterator[tuple[str, str, 
         other = entry.points == "sobol" or entry.axis == "steps"
         counted[other].extend(_curve(entry, look, [float(c.count) for c in entry.counts], other, size or 1.0))
         if entry.speed:
-            timed += _curve(entry, look, [timing.seconds for timing in entry.speed.counts], other, size or 1.0, False)
+            milliseconds = [1e3 * timing.seconds for timing in entry.speed.counts]
+            timed += _curve(entry, look, milliseconds, other, size or 1.0, False)
     for name, across, title, curves, slope in (
-        ("time", "processor time of one estimate [s]", "Error against time", timed, 0.0),
+        ("time", "processor time of one estimate [ms]", "Error against time", timed, 0.0),
         ("samples", "samples", "Error against samples", counted[0], -0.5),
         ("other", "Sobol points, or steps of a march", "Sobol points and marching", counted[1], -1.0),
     ):

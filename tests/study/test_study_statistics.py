@@ -20,14 +20,14 @@ from study_fixtures import LIT, SMALL, drawn, estimator, kinds, study_from
 from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.statistics.tails import binomial_at_most
 from fogproof.contracts import Reference
-from fogproof.study.aggregate import merged, pooled
+from fogproof.study.aggregate import Level, merged, pooled
 from fogproof.study.batches import TAIL, TAIL_SHARE, _largest, moments_of
 from fogproof.study.cells import cells_of
 from fogproof.study.convergence import ABOVE, Z, floor_of, order_of, rmse
 from fogproof.study.history import compare
 from fogproof.study.methods import table as methods
 from fogproof.study.methods.method import Method
-from fogproof.study.speed import Times
+from fogproof.study.speed import Times, times_of
 
 MEAN, SIGMA = 2.0, 0.5
 
@@ -336,6 +336,20 @@ def test_what_is_too_skewed_to_judge_asks_for_more_and_is_no_failure(monkeypatch
             break
     assert named(record, "skewed")["outcome"] == "not rejected"
     assert record["advice"] == ""
+
+
+def test_more_samples_never_take_less_time():
+    def level(count, *seconds):
+        rows = np.zeros((2, 10))
+        return Level(count, rows, 2, np.zeros(10), np.empty(0), math.nan, np.array(seconds), 0.0, 2, 0.0)
+
+    found = [
+        t.estimate.value
+        for t in times_of([level(1, 2.0, 2.0), level(2, 8.0, 8.0), level(4, 2.0, 2.0), level(8, 9.0, 9.0)])
+    ]
+    assert found == pytest.approx([2, 4, 4, 9])
+    untouched = times_of([level(1, 1.0, 3.0), level(2, 5.0, 4.0)])
+    assert [t.seconds.tolist() for t in untouched] == [pytest.approx([1, 3]), pytest.approx([5, 4])]
 
 
 def test_the_scatter_of_rounds_is_the_interval_of_a_time():

@@ -21,7 +21,7 @@ _BEND = 0.1
 """How far the order of errors without noise may drift over the counts it is fitted to, unless their scatter hides it."""
 _BETTER = 1e-4
 """A later stretch of errors without noise is taken where chance makes it scatter so much less with a smaller probability."""
-_COARSE = 1.0
+_COARSE = 0.5
 """An order that is not known to this is none."""
 
 

@@ -17,7 +17,7 @@ from fogproof.study.convergence import Estimate, Floor, Order, Z, floor_of, orde
 from fogproof.study.judgement import Judged, excess, inherited, judge, out_of_range, resolution_of
 from fogproof.study.methods.table import kind_of, options_of
 from fogproof.study.reaching import TARGETS, ErrorOverTime, Reach, reach_of, variance_law
-from fogproof.study.speed import time_of
+from fogproof.study.speed import Times, times_of
 
 _NO_LAW = 0.001
 """Measured errors so improbable under sqrt(variance / count) are taken as they are: realisations in a call depend on each other."""
@@ -55,11 +55,11 @@ def measure(cell: Cell, levels: Sequence[Level], alpha: float, twin: Measured | 
     levels = [] if out_of_range(cell, levels) else levels  # what cannot be summed cannot be measured
     value, error = float(cell.reference.value), float(cell.reference.error)
     data = pooled(np.concatenate([level.rows for level in levels])) if levels else Moments()
-    errors = [_rmse(cell, level, data, error) for level in levels]
+    errors, times = [_rmse(cell, level, data, error) for level in levels], times_of(levels)
     order, floor = _fall(cell, levels, errors, data, value, error)
     bias = _bias(cell, levels, data, error)
     stays = _stays(judged, bias, floor)
-    curve = _curve(cell, levels, errors, data, variance, judged, stays)
+    curve = _curve(cell, levels, errors, times, data, variance, judged, stays)
     reaches = () if curve is None else _reaches(curve, abs(value), error)
     record = {
         "name": cell.name,
@@ -82,7 +82,7 @@ def measure(cell: Cell, levels: Sequence[Level], alpha: float, twin: Measured | 
         "floor": None if floor is None else asdict(floor),
         "cost": levels[-1].cost if levels and not math.isnan(levels[-1].cost) else None,
         "counts": [_count(cell, level, e, variance) for level, e in zip(levels, errors, strict=True)],
-        "speed": _speed(cell, levels, reaches) if levels else None,
+        "speed": _speed(cell, levels, times, reaches) if levels else None,
     }
     measured = Measured(cell, judged, reaches, record)
     record["status"] = measured.status
@@ -188,6 +188,7 @@ def _curve(
     cell: Cell,
     levels: Sequence[Level],
     errors: Sequence[Estimate],
+    times: Sequence[Times],
     data: Moments,
     variance: Reference | None,
     judged: Judged,
@@ -196,7 +197,7 @@ def _curve(
     """Return the error against time; None where nothing was drawn, or not every realisation is a number."""
     if not levels or any(level.bad for level in levels):
         return None
-    counts, times = np.array([level.count for level in levels]), [time_of(level) for level in levels]
+    counts = np.array([level.count for level in levels])
     law = None
     if (
         cell.method.axis == "samples"
@@ -238,23 +239,22 @@ def _reaches(curve: ErrorOverTime, value: float, hidden: float) -> tuple[Reach, 
     return tuple(reach_of(curve, error * value, error, hidden) for error in TARGETS)
 
 
-def _speed(cell: Cell, levels: Sequence[Level], reaches: Sequence[Reach]) -> dict[str, Any]:
+def _speed(cell: Cell, levels: Sequence[Level], times: Sequence[Times], reaches: Sequence[Reach]) -> dict[str, Any]:
     """Return what depends on the machine; rank and relative speed are added once the scene's soonest is known."""
     last = levels[-1]
     each = last.count if cell.method.axis == "samples" else 1
-    whole = time_of(last).estimate
+    whole = times[-1].estimate
     return {
         "cpu": {"value": whole.value / each, "low": whole.low / each, "high": whole.high / each},
         "wall": last.wall,
         "batches": last.batches,
         "cpu_total": sum(level.cpu_total for level in levels),
-        "counts": [_timing(level) for level in levels],
+        "counts": [_timing(level, time.estimate) for level, time in zip(levels, times, strict=True)],
         "targets": [_target(reach) for reach in reaches],
     }
 
 
-def _timing(level: Level) -> dict[str, float]:
-    time = time_of(level).estimate
+def _timing(level: Level, time: Estimate) -> dict[str, float]:
     return {"count": level.count, "seconds": time.value, "low": time.low, "high": time.high}
 
 

@@ -150,18 +150,13 @@ def _compared(scene: Sequence[Measured]) -> list[str]:
 
 
 def _marched(m: Measured) -> str:
-    value, label = abs(float(m.cell.reference.value)), m.record["label"]
     if m.unbiased:
-        return f"{label} is exact here."
-    ends = (m.record["counts"][0], m.record["counts"][-1])
-    off = " and ".join(f"{c['rmse'] / value if value else c['rmse']:.2g} with {c['count']} steps" for c in ends)
+        return f"{m.record['label']} is exact here."
     order = m.record["order"]
-    fall = (
-        f"its error is of order {order['value']:.2f} [{order['low']:.2f}, {order['high']:.2f}] from {order['first']} steps on"
-        if order
-        else "no order can be seen within these counts"
-    )
-    return f"{label} is off by {off}; {fall}."
+    if order is None:
+        return f"The order of {_inside(m)} cannot be seen within these counts."
+    within = f"{order['value']:.2f} [{order['low']:.2f}, {order['high']:.2f}]"
+    return f"{m.record['label']} is of order {within} from {order['first']} steps on."
 
 
 def _time(reach: Reach) -> str:

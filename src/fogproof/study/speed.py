@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -54,6 +55,16 @@ def _around(logs: np.ndarray) -> Estimate:
     return scaled(value, reach, reach)
 
 
-def time_of(level: Level) -> Times:
-    """Return the time of one estimate with a level's count."""
-    return Times(level.seconds)
+def times_of(levels: Sequence[Level]) -> list[Times]:
+    """Return the time of one estimate at each count, rising: where noise makes more samples faster, counts share their mean.
+
+    Pool adjacent violators (Ayer et al. 1955), in logarithms.
+    """
+    means = [math.log(Times(level.seconds).estimate.value) for level in levels]
+    pools: list[list[float]] = []
+    for mean in means:
+        pools.append([mean])
+        while len(pools) > 1 and np.mean(pools[-2]) > np.mean(pools[-1]):
+            pools[-2:] = [pools[-2] + pools[-1]]
+    rising = [float(np.mean(pool)) for pool in pools for _ in pool]
+    return [Times(level.seconds * math.exp(new - old)) for level, new, old in zip(levels, rising, means, strict=True)]
