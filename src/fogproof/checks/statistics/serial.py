@@ -133,11 +133,20 @@ def serial_test(name: str, sums: Successions | None, alpha: float) -> Finding:
     message += ": an antithetic stream" if rejected and best.coefficient < -_ANTITHETIC else ""
     cause = "dependent samples" if abs(best.coefficient) > _STRONG else "correlation"
     pairs = int(sums.many[1]) if sums.many[0] else int(sums.counts[1])
-    critical = math.sqrt(2 * math.log(2 * 2.0 * LAGS * sums.next.size / alpha)) + normal_quantile(MISS)
-    seen = Resolution(f"correlation at a lag up to {LAGS}", min(critical / math.sqrt(max(pairs, 1)), 1.0), MISS)
+    seen = Resolution(f"correlation at a lag up to {LAGS}", _seen(pairs, 2.0 * LAGS * sums.next.size, alpha), MISS)
     return Finding(
         name, outcome, message, p, alpha, False, best.z, best.coefficient, seen, cause=cause if rejected else ""
     )
+
+
+def _seen(pairs: int, rivals: float, alpha: float) -> float:
+    """Return the correlation of uniform scores that so many pairs show, but for `MISS`.
+
+    Bernstein's exponent z^2 / (2 (1 + z / sqrt(pairs))) must reach the level; and products of scores that are correlated scatter more.
+    """
+    root, level = math.sqrt(max(pairs, 1)), math.log(2 * rivals / alpha)
+    critical = level / root + math.sqrt((level / root) ** 2 + 2 * level)
+    return min((critical + normal_quantile(MISS) * (1 + critical / root)) / root, 1.0)
 
 
 @dataclass(frozen=True)
