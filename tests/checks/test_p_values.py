@@ -41,7 +41,9 @@ def line(cells, error=0.0, blur=0.0):
     """Cells of equal probability on [0, 1], each edge's cdf known to within `error`."""
     edges = np.linspace(0, 1, cells + 1)
     none, unsure = np.zeros(cells + 1), np.full(cells + 1, error)
-    return Marginal("x", edges, edges, edges, none, unsure, np.full(cells + 1, blur), True, Lookup.of(edges), lambda c: c)
+    return Marginal(
+        "x", edges, edges, edges, none, unsure, np.full(cells + 1, blur), True, Lookup.of(edges), lambda c: c
+    )
 
 
 def held(p, tight=0.0):
@@ -242,14 +244,17 @@ def test_channels_share_the_scatter_of_calls():
 def test_few_pairs_have_the_hypergeometric_law():
     """A tail of few pairs, where a normal law would be wrong by a factor of ten."""
     rng = np.random.default_rng()
-    p = [concordance(record(np.where(rng.random(2000) < 0.15, 1.0, rng.random(2000) * 0.5), 2000), 0, 0)[0] for _ in range(300)]
+    p = [
+        concordance(record(np.where(rng.random(2000) < 0.15, 1.0, rng.random(2000) * 0.5), 2000), 0, 0)[0]
+        for _ in range(300)
+    ]
     held(p)
 
 
 def test_scatter_of_calls_is_seen_both_ways():
     rng = np.random.default_rng()
     strata = np.concatenate([rng.permutation((np.arange(100) + rng.random(100)) / 100) for _ in range(40)])
-    moved = np.concatenate([rng.random(100) + 0.3 * rng.normal() for _ in range(40)])
+    moved = np.concatenate([rng.random(100) + shift for shift in np.linspace(-0.5, 0.5, 40)])
     for x in (strata, moved):
         assert spread_of_calls("", record(x, 100), [Moments.of(x)], 1e-6).outcome == "rejected"
 

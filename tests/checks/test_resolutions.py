@@ -113,7 +113,9 @@ def test_of_a_missing_band():
             begin = rng.uniform(0, 1 - part * size)
             x = rng.uniform(0, 1 - part * size, n)
             x[x > begin] += part * size
-            caught.append(scan("", marginal, np.bincount((x * 1024).astype(int), minlength=1024), ALPHA).outcome == "rejected")
+            caught.append(
+                scan("", marginal, np.bincount((x * 1024).astype(int), minlength=1024), ALPHA).outcome == "rejected"
+            )
         as_often(caught, most)
 
 
@@ -225,7 +227,9 @@ def test_of_declared_facts():
 
 def test_of_a_difference():
     rng = np.random.default_rng()
-    size = difference_test("", Moments.of(rng.normal(size=4000)), Moments.of(rng.normal(size=1000)), ALPHA).resolution.value
+    size = difference_test(
+        "", Moments.of(rng.normal(size=4000)), Moments.of(rng.normal(size=1000)), ALPHA
+    ).resolution.value
     for part, most in ((1.02, 1.0), (0.75, 0.9)):
         a, b = rng.normal(size=(300, 4000)), rng.normal(size=(300, 1000)) + part * size
         found = [difference_test("", Moments.of(x), Moments.of(y), ALPHA) for x, y in zip(a, b, strict=True)]
@@ -268,9 +272,7 @@ def test_a_bias_of_the_size_asked_for_is_caught_or_the_check_is_inconclusive():
     mean = next(f for f in right.findings if f.check == "mean")
     assert mean.resolution.value <= 0.1
     assert _unresolved(mean, mean.resolution.value * 0.9, right.samples).outcome == "inconclusive"
-    outcomes = [
-        check_estimator(lambda rng, n: rng.normal(0.1, 1.0, n), 0.0, resolution=0.1).outcome for _ in range(40)
-    ]
+    outcomes = [check_estimator(lambda rng, n: rng.normal(0.1, 1.0, n), 0.0, resolution=0.1).outcome for _ in range(40)]
     as_often([outcome == "rejected" for outcome in outcomes])
     few = check_estimator(lambda rng, n: rng.normal(size=n), 0.0, resolution=0.1, samples=1000)
     assert few.outcome == "inconclusive"

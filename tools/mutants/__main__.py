@@ -2,10 +2,10 @@
 
     python tools/mutants [--part checks] [--match WORD] [--sample 30 --seed 1] [--again] [--wide] [--jobs 2]
 
-First the tests that an error names, then those that import its module, the most direct first; a survivor meets the whole folder of
-tests with `--wide`. Results go line by line to runs/mutants.jsonl, and what is there is not run again, but for `--again`, which tries
-survivors once more. `--table` writes docs/mutants.md from them. With `--sample` the program fails if an error survives that is not
-known to be harmless.
+First the tests that an error names, then those that import its module; a survivor meets the whole folder of tests with `--wide`.
+Results go line by line to runs/mutants.jsonl, and what is there is not run again, but for `--again`, which tries survivors once
+more. `--table` writes docs/mutants.md from them. With `--sample` the program fails if an error survives that is not known to be
+harmless.
 """
 
 from __future__ import annotations
@@ -96,7 +96,10 @@ def main() -> int:
                     survivors.append(row)
                 with RESULTS.open("a") as file:
                     file.write(json.dumps(row) + "\n")
-                print(f"{row['outcome']:9} {row['seconds']:6.1f} s  {mutant.file}: {mutant.what}  {row['test']}", flush=True)
+                print(
+                    f"{row['outcome']:9} {row['seconds']:6.1f} s  {mutant.file}: {mutant.what}  {row['test']}",
+                    flush=True,
+                )
 
         with ThreadPoolExecutor(asked.jobs) as pool:
             list(pool.map(one, chosen))

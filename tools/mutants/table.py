@@ -9,9 +9,10 @@ from mutants.mutant import Mutant
 
 _HEAD = """# Errors planted in our own source
 
-`make mutants` plants realistic errors one at a time in a copy of the project and runs the tests that should see them: dropped factors,
-wrong branches, swapped axes, ignored arguments, shrunken bounds, removed clamps, alpha that is not shared, one-sided p-values, wrong
-merges, wrong exit codes. The lists are in `tools/mutants/lists`. This page is written by `python tools/mutants --table`.
+`make mutants` plants realistic errors one at a time in a copy of the project and runs the tests that should see them: dropped
+factors, wrong branches, swapped axes, ignored arguments, shrunken bounds, removed clamps, alpha that is not shared, one-sided
+p-values, wrong merges, wrong exit codes. The lists are in `tools/mutants/lists`. This page is written by
+`python tools/mutants --table`.
 
 | part | errors | seen | harmless | not seen | not tried |
 |---|---|---|---|---|---|
