@@ -1,6 +1,7 @@
-"""p-values of each component: those of SciPy or of enumeration where there are any, else never too small at any level, nor useless."""
+"""p-values of each component: those of SciPy or of enumeration where there are any, else never too small, nor useless."""
 
 import math
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -30,6 +31,7 @@ from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.statistics.scan import _extreme_p, scan, scan_ends, scan_plane
 from fogproof.checks.statistics.serial import Successions, in_units, serial_test
 from fogproof.checks.statistics.smooth import cross, smooth
+from fogproof.checks.statistics.tails import binomial_at_least
 from fogproof.checks.statistics.welch import difference_test
 from fogproof.checks.subject import Subject
 from fogproof.domains import Interval, Product
@@ -65,6 +67,14 @@ def test_binomial_by_enumeration(n, p):
     low, high = p / 2, min(1.5 * p, 1.0)
     kind = [max(binomial_p(int(k), n, q, q) for q in np.linspace(low, high, 41)) for k in hits]
     assert [binomial_p(int(k), n, low, high) for k in hits] == pytest.approx(kind, rel=1e-9)
+
+
+def test_far_tails_of_few_trials_by_fractions():
+    p = Fraction(1e-14)
+    for count, n in ((19, 20), (18, 20), (17, 40)):
+        exact = sum(math.comb(n, k) * p**k * (1 - p) ** (n - k) for k in range(count, n + 1))
+        assert exact < 1e-200
+        assert binomial_at_least(count, n, 1e-14) == pytest.approx(float(exact), rel=1e-10)
 
 
 def test_kolmogorov_is_scipys_but_for_what_lies_between_edges():
@@ -132,7 +142,9 @@ def test_levels_of_chi_square_smooth_and_sparse():
     held([f.p_value for f in z], 0.6)
     assert z[0].p_value == pytest.approx(stats.chi2.sf(z[0].statistic, 4), rel=1e-9) or z[0].p_value < 1e-4
     mass, none = np.full(300, 1 / 300), np.zeros(300)
-    held([chi_square_sparse("", c, mass, none, 1e-6).p_value for c in uniform_counts(300, 900, 600)], 0.6)
+    p = np.array([chi_square_sparse("", c, mass, none, 1e-6).p_value for c in uniform_counts(300, 300, 1500)])
+    held(p, 0.6)
+    assert abs(stats.norm.isf(p).std() - 1) < 6 / math.sqrt(2 * 1500), "its scatter is that of counts with a given sum"
 
 
 def test_levels_of_scans_and_ends():

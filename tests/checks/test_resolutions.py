@@ -44,31 +44,32 @@ def as_often(rejected, most=1.0):
         assert hits <= most * n, f"{hits} of {n}: a resolution is as small as it can be"
 
 
+def power(n, low, high, wrong):
+    """Probability that the exact test at `ALPHA` rejects, from the first counts on either side that it rejects."""
+
+    def first(start, end):
+        step = 1 if end > start else -1
+        while abs(end - start) > 1:
+            middle = (start + end) // 2
+            start, end = (start, middle) if binomial_p(middle, n, low, high) <= ALPHA else (middle, end)
+        return end if 0 <= end <= n and binomial_p(end, n, low, high) <= ALPHA else (n + 1 if step > 0 else -1)
+
+    middle = round(n * 0.5 * (low + high))
+    above = first(middle, n) if binomial_p(n, n, low, high) <= ALPHA else n + 1
+    below = first(middle, 0) if binomial_p(0, n, low, high) <= ALPHA else -1
+    return stats.binom.sf(above - 1, n, wrong) + stats.binom.cdf(below, n, wrong)
+
+
 @pytest.mark.parametrize("n", [1000, 100_000])
-@pytest.mark.parametrize("q", [1e-4, 0.02, 0.5, 0.999])
-def test_of_a_probability(n, q):
-    rng = np.random.default_rng()
-    size = binomial_resolution(n, q, q, ALPHA)
-    caught = {}
-    for sign in (1, -1):
-        wrong = q + sign * size
-        if 0 <= wrong <= 1:
-            counts = rng.binomial(n, wrong, 2000)
-            values, times = np.unique(counts, return_counts=True)
-            hits = [binomial_p(int(k), n, q, q) <= ALPHA for k in values]
-            caught[sign] = np.average(hits, weights=times)
-    assert min(caught.values()) > 0.975, f"99 of 100 were promised: {caught}"
-    counts = rng.binomial(n, q + 0.7 * size * min(caught, key=lambda sign: caught[sign]), 300)
-    hits = [binomial_p(int(k), n, q, q) <= ALPHA for k in counts]
-    assert np.mean(hits) < 0.97, "a resolution is as small as it can be"
-
-
-def test_of_a_probability_known_to_within_an_error():
-    size = binomial_resolution(10_000, 0.29, 0.31, ALPHA)
-    for wrong in (0.3 + size, 0.3 - size):
-        counts = np.random.default_rng().binomial(10_000, wrong, 500)
-        as_often([binomial_p(int(k), 10_000, 0.29, 0.31) <= ALPHA for k in counts])
-    assert binomial("", "", 3000, 10_000, 0.29, 0.31, "", ALPHA).resolution.value == size
+@pytest.mark.parametrize(("low", "high"), [(1e-4, 1e-4), (0.02, 0.02), (0.5, 0.5), (0.999, 0.999), (0.29, 0.31)])
+def test_of_a_probability(n, low, high):
+    """By the exact power of the test, both ways where both are possible; and no smaller size would do."""
+    centre, size = 0.5 * (low + high), binomial_resolution(n, low, high, ALPHA)
+    assert binomial("", "", round(n * centre), n, low, high, "", ALPHA).resolution.value == size
+    sides = [wrong for wrong in (centre + size, centre - size) if 0 <= wrong <= 1]
+    assert min(power(n, low, high, wrong) for wrong in sides) >= 0.99 * (1 - 1e-9)
+    nearer = [centre + 0.98 * (wrong - centre) for wrong in sides]
+    assert min(power(n, low, high, wrong) for wrong in nearer) < 0.99
 
 
 def tilted(cells, n, times, shift):

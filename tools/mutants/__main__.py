@@ -76,8 +76,7 @@ def main() -> int:
     done = results(RESULTS)
     if asked.sample:
         chosen = random.Random(asked.seed).sample(chosen, min(asked.sample, len(chosen)))
-    else:
-        chosen = [m for m in chosen if m.key not in done or (asked.again and done[m.key]["outcome"] != "killed")]
+    chosen = [m for m in chosen if m.key not in done or (asked.again and done[m.key]["outcome"] != "killed")]
     RESULTS.parent.mkdir(exist_ok=True)
     lock, survivors = Lock(), []
     copies: queue.Queue[Copy] = queue.Queue()

@@ -142,7 +142,7 @@ def serial_test(name: str, sums: Successions | None, alpha: float) -> Finding:
 def _seen(pairs: int, rivals: float, alpha: float) -> float:
     """Return the correlation of uniform scores that so many pairs show, but for `MISS`.
 
-    Bernstein's exponent z^2 / (2 (1 + z / sqrt(pairs))) must reach the level; and products of scores that are correlated scatter more.
+    Bernstein's exponent z^2 / (2 (1 + z / sqrt(pairs))) must reach the level, and products of correlated scores scatter more.
     """
     root, level = math.sqrt(max(pairs, 1)), math.log(2 * rivals / alpha)
     critical = level / root + math.sqrt((level / root) ** 2 + 2 * level)
