@@ -1,4 +1,4 @@
-"""Every combination of medium, scattering, light, shadow, ambient light, background and colour: the right terms, the oracle's mean."""
+"""Every combination of medium, scattering, light, shadow, ambient light, background and colour: right terms, the oracle's mean."""
 
 from itertools import product
 
