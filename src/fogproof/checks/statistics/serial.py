@@ -64,9 +64,9 @@ class Successions:
         counts = np.array([n, max(n - 1, 0)])
         whole = n - n % LAGS if first else 0
         c = [(one[:whole] >> _BITS).astype(np.float32) for one in d]
-        many = np.concatenate([[whole], np.maximum(whole - np.arange(1, LAGS + 1), 0), [whole // 2]])
+        many = np.concatenate([[whole], np.maximum(whole - np.arange(1, LAGS + 1), 0), [n // 2 if first else 0]])
         products = [[np.rint(float(one @ other)) for other in c] for one in c]
-        half = [[np.rint(float(one[: whole // 2] @ other[whole - whole // 2 :])) for other in c] for one in c]
+        half = [[np.rint(float(one @ other)) for other in _halves(d, 1, first)] for one in _halves(d, 0, first)]
         return Successions(
             sums,
             squares,
@@ -82,6 +82,13 @@ class Successions:
     def merged(self, other: Successions) -> Successions:
         """Return the sums of both streams."""
         return Successions(*(getattr(self, f.name) + getattr(other, f.name) for f in fields(self)))
+
+
+def _halves(d: list[np.ndarray], second: int, first: bool) -> list[np.ndarray]:
+    """Return the coarse scores of the first or the second half of a call, whatever its size; none but of the first batches."""
+    half = len(d[0]) // 2 if first else 0
+    begin = second * (len(d[0]) - half)
+    return [(one[begin : begin + half] >> _BITS).astype(np.float32) for one in d]
 
 
 def _lagged(c: list[np.ndarray]) -> np.ndarray:
