@@ -327,7 +327,8 @@ def test_the_tail_index_is_a_power_laws_with_its_error():
     rng = np.random.default_rng()
     suspected = [TailEstimate(0.0).after(rng.pareto(1.9, 60_000)).suspect() for _ in range(40)]
     assert sum(suspected) <= 12, "an index of 1.9 +- .2 is no proof"
-    assert all(TailEstimate(0.0).after(rng.pareto(0.9, 60_000)).suspect() for _ in range(10))
+    suspected = [TailEstimate(0.0).after(rng.pareto(0.9, 60_000)).suspect() for _ in range(30)]
+    assert sum(suspected) >= 18, "that further out the index looks unlike by chance is rare"
     assert not any(TailEstimate(0.0).after(rng.exponential(size=60_000)).suspect() for _ in range(10))
     index, error = TailEstimate(0.0).after(rng.pareto(3.0, 400_000)).index()
     assert abs(index - 3) < 6 * error + 0.4
