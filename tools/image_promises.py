@@ -27,6 +27,9 @@ from fogproof.images.compare import compare_image
 from fogproof.images.formats import format_of, layers
 
 ALPHA = 1e-3
+SECOND = 100
+"""Paths a pixel of the second order of scattering that is planted."""
+
 Law = Callable[[np.random.Generator, tuple[int, ...]], np.ndarray]
 
 LAWS: dict[str, Law] = {
@@ -105,7 +108,7 @@ def _twice(x: np.ndarray) -> np.ndarray:
 
     total = np.zeros(x.size)
     column, row = np.meshgrid(np.arange(96), np.arange(72))
-    for _ in range(8):
+    for _ in range(SECOND):
         ray = rays(given.camera, (column + rng.random(column.shape)).ravel(), (row + rng.random(row.shape)).ravel())
         t = ray.length * rng.random(x.size)
         at = ray.origin + t[:, None] * ray.direction
@@ -116,7 +119,7 @@ def _twice(x: np.ndarray) -> np.ndarray:
         once = single_scattering(given.medium, Ray(at, w, np.where(wall > 0, wall, np.inf)), given.light).value
         mu = np.clip(np.sum(w * ray.direction, axis=1), -1, 1)
         total += ray.length * np.exp(-0.1 * t) * 0.08 * 4 * np.pi * phase_pdf(given.medium.phase, mu).value * once
-    return x + total.reshape(x.shape) / 8
+    return x + total.reshape(x.shape) / SECOND
 
 
 def find_planted() -> bool:

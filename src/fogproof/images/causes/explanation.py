@@ -83,10 +83,7 @@ def _choice(sight: Sight, fits: list[CauseFit], noise: np.ndarray, nothing: floa
     nothing /= unit
     price = [one.left + PRICE * len(one.parameters) for one in fits]
     least = min(price)
-    # Causes that leave the same are told apart by nothing: the first named, which is the simplest, is taken.
-    # Without noise what is left is the error of taking middles for means, the same for all.
-    close = 2 * least if unit < 0.5 else least + PRICE
-    best = next(one for one, cost in zip(fits, price, strict=True) if cost <= close)
+    best = next(one for one, cost in zip(fits, price, strict=True) if _as_good(one, cost, least, nothing, unit < 0.5))
     explained = _explained(best, nothing, count)
     gain = nothing - best.left - PRICE * len(best.parameters)
     clean = best.left <= count + SURE * np.sqrt(2 * count)
@@ -95,12 +92,24 @@ def _choice(sight: Sight, fits: list[CauseFit], noise: np.ndarray, nothing: floa
     others = [
         one.hypothesis.cause
         for one, cost in zip(fits, price, strict=True)
-        if one is not best and cost <= close and one.hypothesis.cause != best.hypothesis.cause
+        if one is not best
+        and _as_good(one, cost, least, nothing, unit < 0.5)
+        and one.hypothesis.cause != best.hypothesis.cause
     ]
     words = f"{best.hypothesis.words(best.parameters)}; that explains {min(explained, 1.0):.2%} of the misfit"
     if others:
         words += f"; so would {', '.join(dict.fromkeys(others))}"
     return Choice(best.hypothesis.cause, words, explained, clean)
+
+
+def _as_good(one: CauseFit, cost: float, least: float, nothing: float, exact: bool) -> bool:
+    """Return whether nothing tells a cause from the best one; the first of those, which is the simplest, is named.
+
+    Without noise what is left is the error of taking middles for means, the same for all, which fitted parameters take up.
+    """
+    if not exact:
+        return cost <= least + PRICE
+    return cost <= 2 * least or (not len(one.parameters) and one.left <= 10 * least and one.left <= 1e-4 * nothing)
 
 
 def _fits(sight: Sight, noise: np.ndarray, fast: bool) -> Iterator[CauseFit]:
