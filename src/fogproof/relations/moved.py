@@ -10,7 +10,7 @@ import numpy as np
 
 from fogproof.errors import UnsupportedError
 from fogproof.relations.setting import PathSetting
-from fogproof.scene import PhaseFunction, Ray
+from fogproof.scene import Ray
 
 POINTS = frozenset({"position", "center", "centers", "point", "corner", "lower", "upper"})
 DIRECTIONS = frozenset({"direction", "normal", "axis"})
@@ -78,10 +78,12 @@ def _changed(setting: PathSetting, change: Change) -> PathSetting:
 
 
 def _part(thing: Any, change: Change) -> Any:
-    if thing is None or not dataclasses.is_dataclass(thing) or isinstance(thing, PhaseFunction | type):
+    if thing is None or not dataclasses.is_dataclass(thing) or isinstance(thing, type):
         return thing
     changes: dict[str, Any] = {}
     for field in dataclasses.fields(thing):
+        if field.name == "phase":
+            continue  # of angles alone
         value = getattr(thing, field.name)
         if callable(value):
             raise UnsupportedError(f"{type(thing).__name__} is a function of place, which cannot be moved", "medium")

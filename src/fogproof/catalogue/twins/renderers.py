@@ -44,11 +44,13 @@ def _valued(estimator: Any, alter: Callable[[np.ndarray], np.ndarray]) -> Drawn:
 
 
 def density_ignores_the_transform(setting: PathSetting) -> Estimator:
-    """The grid is moved, and its density is looked up where it would be at the origin."""
+    """The grid is moved, but its density is looked up with coordinates of the world, clamped to its border."""
     medium = setting.medium
     if isinstance(medium, VoxelGrid):
-        extent = np.asarray(medium.upper) - np.asarray(medium.lower)
-        medium = dataclasses.replace(medium, lower=np.zeros(3), upper=extent)
+        size = (np.asarray(medium.upper) - np.asarray(medium.lower)) / medium.sigma_t.shape[:3]
+        moved = np.rint(np.asarray(medium.lower) / size).astype(int)
+        places = [np.clip(np.arange(n) + k, 0, n - 1) for n, k in zip(medium.sigma_t.shape, moved, strict=False)]
+        medium = dataclasses.replace(medium, sigma_t=medium.sigma_t[np.ix_(*places)])
     return traced(setting.but(medium=medium))
 
 
