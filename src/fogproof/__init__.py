@@ -73,6 +73,7 @@ if TYPE_CHECKING:
     )
     from fogproof.gradient_check import check_gradient
     from fogproof.images.compare import compare_image, compare_pictures
+    from fogproof.relation_check import check_relations
     from fogproof.runs import Run
     from fogproof.scene.files import read_image_scene, read_scene
     from fogproof.scene.volume_files import read_voxel_grid
@@ -131,6 +132,7 @@ __all__ = [
     "check_gradient",
     "check_mis",
     "check_reciprocity",
+    "check_relations",
     "check_sampler",
     "check_streams",
     "compare_estimators",
@@ -171,6 +173,7 @@ _LAZY = {
     "fresh_seed": "fogproof.checks",
     "samples_for": "fogproof.checks",
     "check_gradient": "fogproof.gradient_check",
+    "check_relations": "fogproof.relation_check",
     "Run": "fogproof.runs",
     "compare_image": "fogproof.images.compare",
     "compare_pictures": "fogproof.images.compare",
