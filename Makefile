@@ -63,11 +63,13 @@ study: $(VENV)/.installed  ## the lecture's estimators, speed against error; res
 kill-study: $(VENV)/.installed  ## kill a study at 20 random moments; nothing may be lost, and no bit may differ
 	$(BIN)/python tools/kill_study.py
 
-torture: $(VENV)/.installed-test  ## nothing lost, nothing silent: kills, flipped bits, broken lines and files; half an hour
+torture: $(VENV)/.installed-test  ## nothing lost, nothing silent: kills, full disks, flipped bits, broken lines, files and commands; an hour
 	$(BIN)/python tools/torture_store.py
 	$(BIN)/python tools/kill_study.py
 	$(BIN)/python tools/fuzz_oracle.py
+	$(BIN)/python tools/fuzz_oracle.py --lines 100000 --mostly-right
 	$(BIN)/python tools/fuzz_files.py
+	$(BIN)/python tools/fuzz_commands.py
 
 golden: $(VENV)/.installed-test  ## prove the golden tables again, by ball arithmetic
 	$(BIN)/python tools/make_golden.py --check
