@@ -16,18 +16,19 @@ from fogproof.checks.density.charts import chart_of
 from fogproof.checks.density.features import Ranges, emptiest
 from fogproof.checks.density.grid import Grid, line_grid_from_cdf, pilot_grid, refilled, unit_square_grid
 from fogproof.checks.density.model import looked_at, looked_at_plane
+from fogproof.checks.density.rounding import ROUNDED, Rounded
 from fogproof.checks.edges import edge_uniforms, no_edge_uniforms
 from fogproof.checks.given_cdf import agreement, continuous_cdf, rosenblatt
 from fogproof.checks.jacobian import jacobian_agreement
 from fogproof.checks.mixture import MixtureTest
 from fogproof.checks.normalisation import FLOOR, albedo, mean_cosine, normalisation
 from fogproof.checks.probes import precision_agreement, reference_agreement
-from fogproof.checks.promises import inside, usual_labels
+from fogproof.checks.promises import at_any_atom, inside, usual_labels
 from fogproof.checks.purity import purity
 from fogproof.checks.statistics.repeats import KEPT, expected_repeats
 from fogproof.checks.statistics.serial import in_units
 from fogproof.checks.streams import batch_generator
-from fogproof.checks.subject import Subject
+from fogproof.checks.subject import Subject, nudged
 from fogproof.checks.table import table_grid
 from fogproof.checks.tally import Counter, Tally
 from fogproof.checks.verdict import Finding
@@ -182,7 +183,8 @@ def _prepared(subject: Subject, samples: int, seed: int) -> Prepared:
         counter = _counter(subject, grid, count, None, pilot, None)
         return Prepared(subject, samples, pilot, None, counter, tuple(findings), True)
     chart = chart_of(subject.domain, pilot.points, subject.axis)
-    claim = None if chart is None else claimed(subject, chart, pilot.points, samples)
+    rounded = _rounded(subject, pilot.points, seed)
+    claim = None if chart is None else claimed(subject, chart, pilot.points, samples, rounded)
     if claim is None or claim.doubt:
         return _by_labels(subject, samples, seed, pilot, claim, findings)
     if subject.axis is not None and subject.mean_cosine is not None:
@@ -205,6 +207,19 @@ def _prepared(subject: Subject, samples: int, seed: int) -> Prepared:
         mixture = MixtureTest.of(subject, law, pilot.points, seed, 1)
     counter = _counter(subject, grid, count, ranges, pilot, mixture)
     return Prepared(subject, samples, pilot, claim, counter, tuple(findings), True)
+
+
+def _rounded(subject: Subject, points: np.ndarray, seed: int) -> Rounded:
+    """Return what rounding does to points of the pilot, and whether double precision leads elsewhere."""
+    shown, exact = points, None
+    if subject.precision == "float32" and subject.dimensions is not None:
+        u = subject.uniforms(batch_generator(seed, "samples", 0, 0), ROUNDED)
+        single, double = subject.draw_at(u), subject.draw_at(u.astype(np.float64))
+        both = inside(subject, single) & inside(subject, double)
+        both &= ~at_any_atom(subject, single.x) & ~at_any_atom(subject, double.x)
+        if not np.array_equal(single.x[both], double.x[both]):
+            shown, exact = single.x[both], double.x[both]
+    return Rounded(shown, nudged(shown[:ROUNDED], subject.roundoff), exact, subject.roundoff)
 
 
 def _independent(grid: Grid) -> bool:
