@@ -40,6 +40,7 @@ PILOT = 1 << 14
 _LARGE_PILOT = 1 << 17  # samples that the histogram of the label test follows, at most
 _MOST_ENTRIES = 1 << 22  # of a table that is summed over
 _PRECISION_POINTS = 4096
+_CANCELLED = 4.0  # units in the last place of an axis that single precision may lose
 
 
 @dataclass(frozen=True)
@@ -85,6 +86,11 @@ class Prepared:
             return None
         mass = self.subject.density(np.arange(self.grid.marginals[0].mass.size, dtype=np.float64))
         return float(mass.sum()), 4 * self.subject.roundoff * float(np.sum(np.abs(mass)))
+
+    @cached_property
+    def first_call(self) -> np.ndarray:
+        """The pilot's counts, (k, 32): those of a call like any other."""
+        return self.counter.coarse_at(self.pilot.points)
 
     def convention(self, tally: Tally) -> tuple[float | None, int]:
         """Return the probability of the continuous part, None where it is not known, and among how many samples.
@@ -298,7 +304,14 @@ def _precision(subject: Subject, claim: Claim, seed: int) -> Finding:
     u = batch_generator(seed, "precision", 0, 0).random((_PRECISION_POINTS, subject.dimensions), dtype=np.float32)
 
     def probability(x: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
-        counted = zip(claim.grid.marginals, claim.chart.count(x), strict=True)
-        return [(m.at(c), np.interp(c, m.edges, m.blur)) for m, c in counted]
+        counted, moved = claim.chart.count(x), [claim.chart.count(y) for y in nudged(x, subject.roundoff)]
+        found = []
+        for axis, m in enumerate(claim.grid.marginals):
+            step = _CANCELLED * subject.roundoff * (m.edges[-1] - m.edges[0])
+            at, c = m.at(counted[axis]), counted[axis]
+            others = [c - step, c + step, *(each[axis] for each in moved)]
+            gaps = [np.abs(m.at(np.clip(o, m.edges[0], m.edges[-1])) - at) for o in others]
+            found.append((at, np.max([np.minimum(gap, 1 - gap) for gap in gaps], axis=0)))
+        return found
 
     return precision_agreement(subject, u, probability)

@@ -29,6 +29,7 @@ CAUSES = (
     "edge of the uniforms",
     "repeated samples",
     "coarse numbers",
+    "stratified samples",
     "dependent samples",
     "atom",
     "pdf outside the support",

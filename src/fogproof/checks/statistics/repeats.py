@@ -7,12 +7,13 @@ lies beyond that is an undeclared atom, a generator of few values, or a stream t
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
 
 from fogproof.checks.statistics.goodness import MISS
-from fogproof.checks.statistics.tails import binomial_at_most, poisson_at_least
+from fogproof.checks.statistics.tails import binomial_at_most, normal_quantile, poisson_at_least
 from fogproof.checks.subject import Precision
 from fogproof.checks.verdict import Finding, Resolution
 from fogproof.domains import Domain, UnitHemisphere, UnitSphere
@@ -109,11 +110,32 @@ def repeats_test(name: str, prints: np.ndarray, expected: Callable[[int], float]
     return Finding(name, "rejected", f"{message}: {kind}", p, alpha, False, seen, seen / n, resolution, cause=cause)
 
 
-def _smallest_atom(n: int, allowed: float, alpha: float) -> float:
-    """Return the probability of a point whose repetitions among n points are more than `allowed` explains, but for `MISS`."""
+def _fewest(n: int, allowed: float, alpha: float) -> float:
+    """Return the probability of each of some equally likely values whose repetitions are noticed, but for `MISS`.
+
+    Among n values, 1 / p of them different at most, about n^2 p / 2 repeat an earlier one, as often as a Poisson number, or less
+    scattered.
+    """
+    least, z = _noticed(allowed, alpha), normal_quantile(MISS)
+    wanted = (0.5 * z + math.sqrt(0.25 * z * z + least)) ** 2 + 1
+    low, high = 0.0, 1.0
+    for _ in range(60):  # n - E[different ones], with (1 - exp(-n p)) / p different ones
+        p = 0.5 * (low + high)
+        low, high = (p, high) if n + math.expm1(-n * p) / p < wanted else (low, p)
+    return high
+
+
+def _noticed(allowed: float, alpha: float) -> int:
+    """Return a number of repetitions that is rejected where about `allowed` are explained."""
     least = 1
     while poisson_at_least(least, max(allowed, 1e-300)) > alpha:
         least = max(least + 1, int(1.05 * least))
+    return least
+
+
+def _smallest_atom(n: int, allowed: float, alpha: float) -> float:
+    """Return the probability of a point whose repetitions among n points are more than `allowed` explains, but for `MISS`."""
+    least = _noticed(allowed, alpha)
     low, high = 0.0, 1.0
     for _ in range(40):
         middle = 0.5 * (low + high)
@@ -163,8 +185,9 @@ def coarse_test(name: str, label: str, t: np.ndarray, rounding: float, bits: int
     allowed = _SLACK * (n * _EQUAL + float(np.sum(merged)) + 0.5 * n * n * 2.0**-bits)
     p = poisson_at_least(seen, allowed)
     different = n - seen
+    resolution = Resolution(f"probability of each value of {label}, of a few equally likely ones,", _fewest(n, allowed, alpha), MISS)
     message = f"{different} of {n} values of {label} differ; rounding explains up to about {allowed:.2g} equal ones"
     if p > alpha:
-        return Finding(name, "not rejected", message, p, alpha, False, seen, seen / n)
+        return Finding(name, "not rejected", message, p, alpha, False, seen, seen / n, resolution)
     values = f"{message}: {label} takes few values" if different < 0.9 * n else message
-    return Finding(name, "rejected", values, p, alpha, False, seen, seen / n, cause="coarse numbers")
+    return Finding(name, "rejected", values, p, alpha, False, seen, seen / n, resolution, cause="coarse numbers")

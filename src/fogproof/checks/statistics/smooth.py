@@ -12,7 +12,7 @@ import numpy as np
 
 from fogproof.checks.density.curve import legendre
 from fogproof.checks.density.grid import GridPlane, Marginal
-from fogproof.checks.statistics.goodness import MISS, nothing_counted
+from fogproof.checks.statistics.goodness import EXPLAINED, MISS, nothing_counted
 from fogproof.checks.statistics.tails import chi_square_above, chi_square_detected
 from fogproof.checks.verdict import Finding, Resolution
 
@@ -58,7 +58,7 @@ def cross(name: str, labels: tuple[str, str], plane: GridPlane, counts: np.ndarr
     values, vectors = np.linalg.eigh((products * mass) @ products.T)
     white = (vectors / np.sqrt(np.maximum(values, 1e-12))).T @ products
     z = white @ counts.ravel() / math.sqrt(n)
-    slack = math.sqrt(n) * np.abs(white) @ plane.error.ravel()
+    slack = math.sqrt(n) * np.abs(white) @ (plane.error + plane.blur(len(plane.mass))).ravel()
     return _judged(name, z, slack, n, alpha, f"smooth dependence of {labels[0]} and {labels[1]}", "correlation")
 
 
@@ -72,10 +72,12 @@ def _judged(
     rejected = p <= alpha
     largest = int(np.argmax(np.abs(z)))
     message = f"chi-square = {statistic:.4g} on {len(z)} components, the largest is number {largest + 1}"
-    seen = math.sqrt(chi_square_detected(len(z), alpha, MISS) / n)
+    hidden = not rejected and statistic == 0 and bool(np.any(np.abs(z) > _NEGLIGIBLE))
+    message += EXPLAINED if hidden else ""
+    seen = (math.sqrt(chi_square_detected(len(z), alpha, MISS)) + float(np.linalg.norm(slack))) / math.sqrt(n)
     return Finding(
         name,
-        "rejected" if rejected else "not rejected",
+        "rejected" if rejected else "inconclusive" if hidden else "not rejected",
         message,
         p,
         alpha,
