@@ -5,8 +5,8 @@ import pytest
 
 from fogproof.checks.density.charts import chart_of
 from fogproof.checks.density.grid import grid_of
-from fogproof.checks.density.rounding import Rounded, blurred
 from fogproof.checks.density.model import Effort, integrated, looked_at
+from fogproof.checks.density.rounding import Rounded, blurred
 from fogproof.checks.subject import nudged
 from fogproof.domains import Interval, UnitDisk, UnitHemisphere, UnitSphere
 

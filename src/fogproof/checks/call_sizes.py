@@ -63,7 +63,9 @@ def one_law(name: str, subject: Subject, calls: Points, pilot: np.ndarray, seed:
     rejected = p <= alpha
     outcome: Outcome = "rejected" if rejected else "not rejected"
     cause = _CAUSE if rejected else ""
-    return Finding(name, outcome, message, p, alpha, False, effect, effect, _reach(calls, n, rivals, alpha), cause=cause)
+    return Finding(
+        name, outcome, message, p, alpha, False, effect, effect, _reach(calls, n, rivals, alpha), cause=cause
+    )
 
 
 def _reach(calls: Points, n: int, rivals: int, alpha: float) -> Resolution | None:

@@ -22,7 +22,7 @@ from fogproof.checks.given_cdf import agreement, continuous_cdf, rosenblatt
 from fogproof.checks.jacobian import jacobian_agreement
 from fogproof.checks.mixture import MixtureTest
 from fogproof.checks.normalisation import FLOOR, albedo, mean_cosine, normalisation
-from fogproof.checks.probes import precision_agreement, reference_agreement
+from fogproof.checks.probes import precision_agreement, reference_agreement, support_of_eval
 from fogproof.checks.promises import at_any_atom, inside, usual_labels
 from fogproof.checks.purity import purity
 from fogproof.checks.statistics.repeats import KEPT, expected_repeats
@@ -184,6 +184,8 @@ def _prepared(subject: Subject, samples: int, seed: int) -> Prepared:
         findings += [*purity(subject, uniforms), edge_uniforms(subject, pilot.labels)]
     if subject.reference is not None and len(pilot.points):
         findings.append(reference_agreement(subject, pilot.points))
+    if subject.eval is not None:
+        findings.append(support_of_eval(subject, pilot.points))
     if isinstance(subject.domain, Discrete) and subject.domain.n <= _MOST_ENTRIES:
         grid, count = table_grid(subject, int(subject.domain.n))
         counter = _counter(subject, grid, count, None, pilot, None)

@@ -52,19 +52,7 @@ def tests_of(prepared: Prepared, tally: Tally) -> list[Test]:
         _add_cells(add, grid, tally)
     if prepared.counter.mixture is not None and not vacuum:
         _add_labels(add, prepared.counter.mixture, tally)
-    if not subject.quasi_random:
-        add("serial correlation", serial_test, "serial correlation", tally.serial)
-    if prepared.counter.evens and not vacuum:
-        calls = np.concatenate([prepared.first_call[None], tally.calls])
-        add("evenness", evenness_test, "independence within a call", tuple(m.label for m in grid.marginals), calls)
-    if prepared.calls is not None:
-        asked = subject, prepared.calls, prepared.pilot.points, prepared.seed
-        add("size of the call", one_law, "size of the call", *asked)
-    if prepared.counter.fingerprinted:
-        for coordinate in few_values_axes(subject):
-            drawn = prepared.pilot.points, tally.points
-            add("few values", few_values, f"different values of {coordinate}", subject, coordinate, *drawn)
-        add("repeated points", repeats_test, "repeated points", tally.prints, prepared.expected_repeats)
+    _add_streams(add, prepared, tally, vacuum)
     n = max(tally.drawn, 1)
     wrong_atom = "wrong probability of an atom"
     rest, tried = prepared.convention(tally)
@@ -96,6 +84,24 @@ def tests_of(prepared: Prepared, tally: Tally) -> list[Test]:
             name = "mean weight" if len(claims) == 1 else f"mean weight of channel {channel}"
             add("mean weight", _mean_weight, name, data[channel], claimed)
     return tests
+
+
+def _add_streams(add: Callable[..., None], prepared: Prepared, tally: Tally, vacuum: bool) -> None:
+    """Add the tests of samples against each other: of their order, their calls, their repetitions."""
+    subject, grid = prepared.subject, prepared.grid
+    if not subject.quasi_random:
+        add("serial correlation", serial_test, "serial correlation", tally.serial)
+    if prepared.counter.evens and not vacuum:
+        calls = np.concatenate([prepared.first_call[None], tally.calls])
+        add("evenness", evenness_test, "independence within a call", tuple(m.label for m in grid.marginals), calls)
+    if prepared.calls is not None:
+        asked = subject, prepared.calls, prepared.pilot.points, prepared.seed
+        add("size of the call", one_law, "size of the call", *asked)
+    if prepared.counter.fingerprinted:
+        for coordinate in few_values_axes(subject):
+            drawn = prepared.pilot.points, tally.points
+            add("few values", few_values, f"different values of {coordinate}", subject, coordinate, *drawn)
+        add("repeated points", repeats_test, "repeated points", tally.prints, prepared.expected_repeats)
 
 
 def _add_cells(add: Callable[..., None], grid: Grid, tally: Tally) -> None:

@@ -157,8 +157,12 @@ def refilled(grid: Grid, chart: Chart, leaves: Leaves, samples: int) -> Grid:
     """Return the same cells with the probabilities of better known leaves."""
     new = _filled(chart, leaves, [m.edges for m in grid.marginals], samples)
     marginals = zip(new.marginals, grid.marginals, strict=True)
-    plane = new.plane if new.plane is None or grid.plane is None else replace(new.plane, along=grid.plane.along, across=grid.plane.across)
-    return Grid(tuple(replace(m, blur=old.blur) for m, old in marginals), plane)
+    plane = (
+        new.plane
+        if new.plane is None or grid.plane is None
+        else replace(new.plane, along=grid.plane.along, across=grid.plane.across)
+    )
+    return Grid(tuple(replace(m, blur=before.blur) for m, before in marginals), plane)
 
 
 def _filled(chart: Chart, leaves: Leaves, edges: list[np.ndarray], samples: int) -> Grid:
@@ -253,7 +257,9 @@ def unit_square_grid(labels: tuple[str, str], samples: int) -> Grid:
     rows = (np.arange(cells) * size) // cells
     mass = np.full((_COARSE, _COARSE), _COARSE**-2.0)
     share, zero = np.full(size, 1 / size), np.zeros(size + 1)
-    return Grid(marginals, GridPlane((rows, rows), (share, share), zero, zero[1:], mass, np.full_like(mass, 1e-14), True))
+    return Grid(
+        marginals, GridPlane((rows, rows), (share, share), zero, zero[1:], mass, np.full_like(mass, 1e-14), True)
+    )
 
 
 def _masses(leaves: Leaves, first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -1,8 +1,8 @@
 """What rounding can move across the edges of cells, charged where it arises.
 
-A point is known to a few units in the last place of its coordinates. What happens inside a sampler is known no better than it shows:
-the same uniforms given in double precision lead elsewhere by just as much as single precision is off. Where they lead to the same
-point, nothing shows; then a coordinate made of coarse numbers may be off by a few of their steps, any other by one.
+A point is known to a few units in the last place of its coordinates. What happens inside a sampler shows where the same uniforms are
+given in double precision: they lead elsewhere by just as much as single precision is off. Where they lead to the same point, nothing
+shows; then a coordinate made of coarse numbers may be off by a few of their steps.
 """
 
 from __future__ import annotations
@@ -22,9 +22,11 @@ _ROWS = 256  # the same, of the first axis, for what it does to the second
 _INSIDE = 4.0  # times the mean shift that is seen: all values of one step of coarse numbers
 _COARSE = 4.0  # units in the last place of the largest coordinate: what cancellation costs a textbook formula
 _WINDOW = 256  # neighbours that tell how close values are
-_DENSE = 1 / 8  # of a unit: values so close would fill the steps of coarse numbers many times
+_DENSE = 1 / 4  # of a unit: values so close fill the steps of coarse numbers many times
 _ENOUGH = 0.1  # of the values, that are so close
 _HALF = 0.5
+_STEPS = 0.7  # of the way that values cover, in gaps of half a unit or more
+_POLE = 0.02  # of the points, the nearest to a pole
 
 
 @dataclass(frozen=True)
@@ -94,10 +96,12 @@ class _Axis:
             shifts[-1] = _INSIDE * shifts[-1]
         return np.asarray(np.max(shifts, axis=0))
 
-    @property
-    def near(self) -> float:
-        """How far from a pole points are that rounding may move onto it, in the counted coordinate."""
-        return _INSIDE * float(np.mean(np.abs(self.counted - self.others[-1]))) if self.exact else self.step
+    def near(self, side: int) -> float:
+        """Return how far from a pole points are that rounding may move onto it, in the counted coordinate."""
+        if not self.exact:
+            return self.step
+        nearest = np.argsort(side * self.counted)[: max(int(_POLE * len(self.counted)), 1)]
+        return _INSIDE * float(np.mean(np.abs(self.counted - self.others[-1])[nearest]))
 
     def blur(self, pole: _Axis | None) -> np.ndarray:
         """Return (m + 1,) the probability that samples cross each edge; `pole` is the axis about whose ends this one turns."""
@@ -114,7 +118,7 @@ class _Axis:
         There an angle about that end says nothing.
         """
         m = self.marginal
-        low, high = np.interp([m.edges[0] + self.near, m.edges[-1] - self.near], m.edges, m.cdf)
+        low, high = np.interp([m.edges[0] + self.near(1), m.edges[-1] - self.near(-1)], m.edges, m.cdf)
         return np.asarray(np.diff(np.minimum(shares, low)) + np.diff(np.maximum(shares, high)))
 
     def blur_in_rows(self, first: _Axis, edges: np.ndarray) -> np.ndarray:
@@ -138,7 +142,7 @@ def _step(marginal: Marginal, counted: np.ndarray, rounded: Rounded) -> float:
     unit = 0.5 * rounded.roundoff * float(marginal.edges[-1] - marginal.edges[0])
     if rounded.exact is not None:
         return 0.0
-    return 2 * _COARSE * unit if not marginal.ends or _coarse(counted, unit) else unit
+    return 2 * _COARSE * unit if not marginal.ends or _coarse(counted, unit) else 0.0
 
 
 def _coarse(t: np.ndarray, unit: float) -> bool:
@@ -150,4 +154,4 @@ def _coarse(t: np.ndarray, unit: float) -> bool:
     if np.mean(dense) < _ENOUGH:
         return True
     gap = gap[dense]
-    return float(gap[gap > _HALF * unit].sum()) > _HALF * float(gap.sum())
+    return float(gap[gap > _HALF * unit].sum()) > _STEPS * float(gap.sum())

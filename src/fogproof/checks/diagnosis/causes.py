@@ -20,6 +20,7 @@ CAUSES = (
     "sign convention",
     "wrong pdf returned",
     "wrong weight",
+    "lost contribution",
     "wrong event label",
     "lost samples",
     "wrong probability of an atom",

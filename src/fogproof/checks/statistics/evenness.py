@@ -1,7 +1,7 @@
 """Are the counts of one call as uneven as those of independent samples?
 
-Points of a call that are stratified, a Latin hypercube or a low-discrepancy sequence, in whatever order, fill cells too evenly: each
-call has almost the same counts. Held against each other, calls need no known probabilities: Pearson's statistic of their
+Points of a call that are stratified, a Latin hypercube or a low-discrepancy sequence, in whatever order, fill cells too evenly: every
+call has about the same counts. Held against each other, calls need no known probabilities: Pearson's statistic of their
 homogeneity lies in its lower tail.
 """
 
@@ -43,7 +43,16 @@ def evenness_test(name: str, labels: tuple[str, ...], calls: np.ndarray, alpha: 
         return Finding(name, "not rejected", message, p, alpha, False, share, 1 - share, resolution)
     advice = "a stratified or low-discrepancy stream; if it is meant, declare quasi_random=True"
     return Finding(
-        name, "rejected", f"{message}: {advice}", p, alpha, False, share, 1 - share, resolution, cause="stratified samples"
+        name,
+        "rejected",
+        f"{message}: {advice}",
+        p,
+        alpha,
+        False,
+        share,
+        1 - share,
+        resolution,
+        cause="stratified samples",
     )
 
 

@@ -26,6 +26,9 @@ from fogproof.checks.verdict import EffectInterval, Finding, Outcome, Resolution
 MISS = 0.01
 """Every resolution is stated for this probability of missing the error."""
 
+HIDDEN = 0.5
+"""Root mean square of the ratio of densities less 1: where rounding could explain so much, seeing nothing is no pass."""
+
 EXPLAINED = "; rounding explains any difference there could be: nothing can be told"
 """What is said where single precision leaves nothing to see."""
 
@@ -33,7 +36,7 @@ _FEWEST = 4  # cells along each axis of the plane
 _LEAST = 20.0  # samples expected in a cell: the chi-square law is then accurate far into its tail
 _BLURRED = 0.1  # standard deviations of a count: an expectation known less well makes a test inconclusive
 _EXACT = 0.01  # standard deviations: an expectation known better leaves p-values uniform
-_HIDDEN = 0.5  # of probability that rounding may move: nothing is left to see
+_MOVED = 0.1  # of probability that rounding may move: where that is not seen, nothing is known
 
 
 def kolmogorov(name: str, marginal: Marginal, counts: np.ndarray, alpha: float) -> Finding:
@@ -58,7 +61,7 @@ def kolmogorov(name: str, marginal: Marginal, counts: np.ndarray, alpha: float) 
     )
     message = f"largest distance between the cumulative distributions in {marginal.label} is {seen:.3g}"
     blurred = bool(np.max(marginal.error) * math.sqrt(n) > _BLURRED)
-    hidden = blind > _HIDDEN and not marginal.whole
+    hidden = blind > _MOVED and not marginal.whole
     outcome: Outcome = "rejected" if p <= alpha else "inconclusive" if blurred or hidden else "not rejected"
     if outcome == "inconclusive":
         message += "; the cdf is known too coarsely to tell: give one, or a smoother pdf" if blurred else EXPLAINED
@@ -154,7 +157,8 @@ def chi_square(
     statistic = float(np.sum(deviances(observed, nearest))) / bartlett
     p = chi_square_above(cells - 1, statistic)
     blurred = bool(np.any(error > _BLURRED * sigma))
-    hidden = statistic == 0 and bool(np.any(np.abs(observed - expected) > _EXACT * sigma))
+    hides = math.sqrt(float(np.sum(slack**2 / expected)) / n)
+    hidden = statistic == 0 and hides > HIDDEN
     outcome: Outcome = "rejected" if p <= alpha else "inconclusive" if blurred or hidden else "not rejected"
     effect = float(0.5 * np.sum(np.abs(observed - expected)) / n)
     message = f"chi-square = {statistic:.5g} on {cells - 1} degrees of freedom"
@@ -163,8 +167,7 @@ def chi_square(
         message += coarse if blurred else EXPLAINED
     exact = bool(np.all(slack <= _EXACT * sigma))
     cause = "shape" if outcome == "rejected" else ""
-    hides = math.sqrt(float(np.sum(slack**2 / expected)))
-    seen = (math.sqrt(bartlett * chi_square_detected(cells - 1, alpha, MISS)) + hides) / math.sqrt(n)
+    seen = math.sqrt(bartlett * chi_square_detected(cells - 1, alpha, MISS) / n) + hides
     resolution = Resolution(unevenness(cells), seen, MISS)
     return Finding(name, outcome, message, p, alpha, exact, statistic, effect, resolution=resolution, cause=cause)
 
@@ -184,8 +187,8 @@ def joint(name: str, plane: GridPlane, counts: np.ndarray, alpha: float) -> Find
     cells, n = len(plane.mass), float(counts.sum())
     while cells > _FEWEST and drowned(n, blocks(plane.mass, cells), plane.blur(cells)):
         cells //= 2
-    masses = (blocks(values, cells) for values in (counts, plane.mass, plane.error))
-    return chi_square(name, *masses, plane.blur(cells), alpha)
+    observed, mass, error = (blocks(values, cells) for values in (counts, plane.mass, plane.error))
+    return chi_square(name, observed, mass, error, plane.blur(cells), alpha)
 
 
 def joint_fine(name: str, plane: GridPlane, counts: np.ndarray, alpha: float) -> Finding:
@@ -238,10 +241,12 @@ def chi_square_sparse(name: str, counts: np.ndarray, mass: np.ndarray, blur: np.
     rejected = p <= alpha
     uneven = max((statistic - cells) / max(n, 1), 0.0)
     message = f"chi-square = {statistic:.7g} on {cells - 1} degrees of freedom, {n / cells:.2g} samples a cell"
-    outcome: Outcome = "rejected" if rejected else "inconclusive" if statistic == 0 and not exact else "not rejected"
-    message += EXPLAINED if outcome == "inconclusive" else ""
-    hides = math.sqrt(n * float(np.sum(blur**2 / mass)))
-    resolution = Resolution(unevenness(cells), (_reach(shape, scale, variance, alpha) + hides) / math.sqrt(n), MISS)
+    hides = math.sqrt(float(np.sum(blur**2 / mass)))
+    hidden = statistic == 0 and hides > HIDDEN
+    outcome: Outcome = "rejected" if rejected else "inconclusive" if hidden else "not rejected"
+    message += EXPLAINED if hidden else ""
+    seen = _reach(shape, scale, variance, alpha) / math.sqrt(n) + hides
+    resolution = Resolution(unevenness(cells), seen, MISS)
     cause = "correlation" if rejected else ""
     return Finding(
         name,

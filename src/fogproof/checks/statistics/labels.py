@@ -166,9 +166,7 @@ def _chi_square(name: str, columns: np.ndarray, alpha: float) -> Finding:
     seen = math.sqrt(chi_square_detected(cells, alpha, MISS) / float(variance.sum()))
     resolution = Resolution(unevenness(cells), seen * (1 + 0.5 * seen), MISS)
     cause = "shape" if rejected else ""
-    return Finding(
-        name, outcome, message, p, alpha, True, statistic, misfit, resolution=resolution, cause=cause
-    )
+    return Finding(name, outcome, message, p, alpha, True, statistic, misfit, resolution=resolution, cause=cause)
 
 
 def largest(name: str, describe: Callable[[int, int], str], sums: tuple[Sums, ...], alpha: float) -> Finding:

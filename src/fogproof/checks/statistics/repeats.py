@@ -23,6 +23,7 @@ KEPT = 1 << 18
 
 _WINDOW = 32  # neighbours on either side that tell how far apart values are
 _EQUAL = 1e-6  # of that distance
+_CERTAIN = 0.999
 
 _SLACK = 8.0  # how much coarser than the result the numbers inside a sampler may be
 _UNIFORM: dict[Precision, float] = {"float64": 2.0**-53, "float32": 2.0**-24}
@@ -103,7 +104,7 @@ def repeats_test(name: str, prints: np.ndarray, expected: Callable[[int], float]
     allowed = _SLACK * expected(n)
     p = poisson_at_least(seen, max(allowed, 1e-300))
     message = f"{seen} of the first {n} points repeat an earlier one; rounding explains up to about {allowed:.2g}"
-    resolution = Resolution("probability of an undeclared atom", _smallest_atom(n, allowed, alpha), MISS)
+    resolution = _less_than_all("probability of an undeclared atom", _smallest_atom(n, allowed, alpha))
     if p > alpha:
         return Finding(name, "not rejected", message, p, alpha, False, seen, seen / max(n, 1), resolution)
     kind, cause = _kind_of_repetition(prints)
@@ -123,6 +124,11 @@ def _fewest(n: int, allowed: float, alpha: float) -> float:
         p = 0.5 * (low + high)
         low, high = (p, high) if n + math.expm1(-n * p) / p < wanted else (low, p)
     return high
+
+
+def _less_than_all(kind: str, probability: float) -> Resolution | None:
+    """Return a resolution, None where not even a certainty would be noticed."""
+    return Resolution(kind, probability, MISS) if probability < _CERTAIN else None
 
 
 def _noticed(allowed: float, alpha: float) -> int:
@@ -185,7 +191,8 @@ def coarse_test(name: str, label: str, t: np.ndarray, rounding: float, bits: int
     allowed = _SLACK * (n * _EQUAL + float(np.sum(merged)) + 0.5 * n * n * 2.0**-bits)
     p = poisson_at_least(seen, allowed)
     different = n - seen
-    resolution = Resolution(f"probability of each value of {label}, of a few equally likely ones,", _fewest(n, allowed, alpha), MISS)
+    kind = f"probability of each value of {label}, of a few equally likely ones,"
+    resolution = _less_than_all(kind, _fewest(n, allowed, alpha))
     message = f"{different} of {n} values of {label} differ; rounding explains up to about {allowed:.2g} equal ones"
     if p > alpha:
         return Finding(name, "not rejected", message, p, alpha, False, seen, seen / n, resolution)

@@ -12,7 +12,7 @@ import numpy as np
 
 from fogproof.checks.density.curve import legendre
 from fogproof.checks.density.grid import GridPlane, Marginal
-from fogproof.checks.statistics.goodness import EXPLAINED, MISS, nothing_counted
+from fogproof.checks.statistics.goodness import EXPLAINED, HIDDEN, MISS, nothing_counted
 from fogproof.checks.statistics.tails import chi_square_above, chi_square_detected
 from fogproof.checks.verdict import Finding, Resolution
 
@@ -58,8 +58,17 @@ def cross(name: str, labels: tuple[str, str], plane: GridPlane, counts: np.ndarr
     values, vectors = np.linalg.eigh((products * mass) @ products.T)
     white = (vectors / np.sqrt(np.maximum(values, 1e-12))).T @ products
     z = white @ counts.ravel() / math.sqrt(n)
-    slack = math.sqrt(n) * np.abs(white) @ (plane.error + plane.blur(len(plane.mass))).ravel()
+    slack = math.sqrt(n) * (np.abs(white) @ plane.error.ravel() + _moved(plane, white))
     return _judged(name, z, slack, n, alpha, f"smooth dependence of {labels[0]} and {labels[1]}", "correlation")
+
+
+def _moved(plane: GridPlane, white: np.ndarray) -> np.ndarray:
+    """Return (q,) how far rounding may move the means of functions (q, cells) on the coarse plane."""
+    size = len(plane.mass)
+    step, f = plane.size // size, white.reshape(len(white), size, size)
+    around = np.abs(f - np.roll(f, 1, axis=2)).sum(axis=2)
+    down = np.abs(np.diff(f, axis=1)) @ plane.shares[1].reshape(size, step).sum(axis=1)
+    return np.asarray(around @ plane.across.reshape(size, step).sum(axis=1) + down @ plane.along[::step][1:-1])
 
 
 def _judged(
@@ -72,9 +81,10 @@ def _judged(
     rejected = p <= alpha
     largest = int(np.argmax(np.abs(z)))
     message = f"chi-square = {statistic:.4g} on {len(z)} components, the largest is number {largest + 1}"
-    hidden = not rejected and statistic == 0 and bool(np.any(np.abs(z) > _NEGLIGIBLE))
+    hides = float(np.linalg.norm(slack)) / math.sqrt(n)
+    hidden = statistic == 0 and hides > HIDDEN
     message += EXPLAINED if hidden else ""
-    seen = (math.sqrt(chi_square_detected(len(z), alpha, MISS)) + float(np.linalg.norm(slack))) / math.sqrt(n)
+    seen = math.sqrt(chi_square_detected(len(z), alpha, MISS) / n) + hides
     return Finding(
         name,
         "rejected" if rejected else "inconclusive" if hidden else "not rejected",
