@@ -115,24 +115,23 @@ class LitMedium:
         if sample is not None:
             return self._scattered_from_extent(sample, t, rng)
         mu, distance, irradiance = self._illumination(self.start + t)
-        value = self.extinction.sigma(t) * irradiance
         uniform = given(self.medium, ROOM, "uniform")
         if uniform is not None and self.shape == EVERYWHERE and self.shadow_rays == "exact" and not self.occluders:
             sigma_t = float(uniform(self.medium))
-            value *= self.albedo * phase_value(self.phase, mu)
+            value = self.albedo * self.extinction.sigma(t) * phase_value(self.phase, mu) * irradiance
             return value * np.exp(-sigma_t * distance) if sigma_t > 0 else value, np.ones_like(t)
         x = self.points(t)
         w = towards(self.light, x)
-        value *= self._source(x, mu)
+        value = self._scattering(t, x, mu) * irradiance
         if self.occluders:
             value *= lit(self.occluders, x, w, distance)
         arriving, cost = self.transmittance(x, w, distance, rng)
         return value * arriving, 1 + cost
 
-    def _source(self, x: np.ndarray, mu: np.ndarray) -> np.ndarray:
-        """Return albedo times phase function at points x (3, n), either of which may differ from place to place [1/sr]."""
+    def _scattering(self, t: np.ndarray, x: np.ndarray, mu: np.ndarray) -> np.ndarray:
+        """Return sigma_s f_p at points x (3, n), where albedo and phase function may differ from place to place [1/(m sr)]."""
         albedo = sources_at(self.medium, x.T)[0] if sources_vary(self.medium) else self.albedo
-        return albedo * phase_value_at(self.medium.phase, x, mu)
+        return albedo * self.extinction.sigma(t) * phase_value_at(self.medium.phase, x, mu)
 
     def _scattered_from_extent(
         self, sample: Sampler, t: np.ndarray, rng: np.random.Generator
@@ -141,7 +140,7 @@ class LitMedium:
         x = self.points(t)
         w, distance, arriving = sample(x, rng.random((len(t), 2)))
         mu = np.clip(self.ray.direction @ w, -1, 1)
-        value = self._source(x, mu) * self.extinction.sigma(t) * arriving
+        value = self._scattering(t, x, mu) * arriving
         if self.occluders:
             value *= lit(self.occluders, x, w, distance)
         through, cost = self.transmittance(x, np.ascontiguousarray(w), distance, rng)

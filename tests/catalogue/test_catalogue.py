@@ -16,6 +16,7 @@ from fogproof.verify import case_seed, run_case, select
 
 SEED = fresh_seed()
 ALPHA = 1e-9
+FEW = 20_000
 CASES = {case.name: case for case in select([])}
 
 
@@ -35,9 +36,13 @@ def test_case_is_not_rejected(case):
 
 
 def test_broken_twin_is_rejected(case):
-    verdict = case.run(ALPHA, case_seed(SEED, case.name), twin=True)
+    seed = case_seed(SEED, case.name)
+    for samples in (min(FEW, case.samples), case.samples):  # what few samples leave open, all of them must decide
+        verdict = case.run(ALPHA, seed, samples, twin=True)
+        strongest = min((f.p_value or 0.0 for f in verdict.findings if f.outcome == "rejected"), default=1.0)
+        if strongest <= 1e-50:
+            break
     assert verdict.outcome == "rejected", f"{case.twin.error}: {verdict}"
-    strongest = min((0.0 if f.p_value is None else f.p_value) for f in verdict.findings if f.outcome == "rejected")
     assert strongest <= 1e-50, f"{case.twin.error}: could be missed: {verdict}"
 
 

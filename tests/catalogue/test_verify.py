@@ -35,7 +35,7 @@ def test_cases_and_seeds_have_streams_of_their_own():
 
 def _with(monkeypatch, case):
     cases = (*catalogue.all_cases(), case)
-    monkeypatch.setattr(verify, "all_cases", lambda: cases)
+    monkeypatch.setattr(verify.selection, "all_cases", lambda: cases)
 
 
 @pytest.mark.parametrize(
@@ -56,7 +56,7 @@ def test_a_case_that_fails_is_its_own_result_and_the_others_go_on(monkeypatch, m
 
 
 def test_a_renderer_that_is_missing_is_a_visible_row(monkeypatch):
-    monkeypatch.setattr(verify.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(verify.running.importlib.util, "find_spec", lambda name: None)
     results = run(["mitsuba/hg/g=0.6", FAST[0]])
     assert results["mitsuba/hg/g=0.6"].status == "skipped"
     assert "python -m pip install 'fogproof[mitsuba]'" in results["mitsuba/hg/g=0.6"].reason
@@ -68,7 +68,7 @@ def test_an_expected_finding_is_known_and_a_surprise_in_either_direction_fails(m
     bad = dataclasses.replace(good, name="known", make=good.twin.make, expected="rejected", reason="planted")
     surprise = dataclasses.replace(good, name="mended", expected="rejected", reason="mended upstream")
     cases = (*catalogue.all_cases(), bad, surprise)
-    monkeypatch.setattr(verify, "all_cases", lambda: cases)
+    monkeypatch.setattr(verify.selection, "all_cases", lambda: cases)
     results = run(["known", "mended"])
     assert results["known"].status == "known"
     assert results["mended"].status == "surprise"
@@ -91,7 +91,7 @@ def test_a_twin_that_is_not_rejected_fails_the_run_and_so_does_one_that_cannot_r
     good = verify.select(["fog/analog/haze"])[0]
     same = dataclasses.replace(good, name="blind", twin=dataclasses.replace(good.twin, make=good.make))
     broken = dataclasses.replace(good, name="broken", twin=dataclasses.replace(good.twin, make=lambda: 1 / 0))
-    monkeypatch.setattr(verify, "all_cases", lambda: (*catalogue.all_cases(), same, broken))
+    monkeypatch.setattr(verify.selection, "all_cases", lambda: (*catalogue.all_cases(), same, broken))
     results = run(["blind", "broken"], twins=True)
     assert results["blind"].twin.outcome == "not rejected"
     assert results["blind"].twin.samples == good.samples

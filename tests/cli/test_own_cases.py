@@ -7,7 +7,7 @@ import pytest
 from click.testing import CliRunner
 
 from fogproof import verify
-from fogproof.catalogue import SamplerCase, own
+from fogproof.catalogue import SamplerCase, all_cases, own
 from fogproof.cli.commands import cli
 from fogproof.errors import FogproofError, InvalidInputError
 
@@ -98,7 +98,7 @@ def test_alpha_is_shared_with_the_file(tmp_path):
     assert alone == {path: 1e-6}
     both = verify.shares(verify.select([path, "fog"]), 1e-6)
     assert sum(both.values()) == pytest.approx(1e-6)
-    assert both[path] == pytest.approx(1e-6 * 8 / (8 + sum(c.weight for c in verify.all_cases())))
+    assert both[path] == pytest.approx(1e-6 * 8 / (8 + sum(c.weight for c in all_cases())))
 
 
 def test_the_command_line_takes_a_file(tmp_path):

@@ -17,7 +17,8 @@ from fogproof.scene import lights, media, occluders, phase, shapes
 
 ROOT = Path(__file__).resolve().parents[2]
 SOURCES = [path for folder in ("analytic", "estimators", "reports") for path in sorted((ROOT / folder).rglob("*.py"))]
-SOURCES += [p for p in sorted((ROOT / "src").rglob("*.py")) if not set(p.parts) & {"analytic", "estimators", "reports"}]
+_ELSEWHERE = {"analytic", "estimators", "reports"}  # links to the folders above
+SOURCES += [p for p in sorted((ROOT / "src").rglob("*.py")) if not set(p.relative_to(ROOT).parts) & _ELSEWHERE]
 TREES = {path.relative_to(ROOT).as_posix(): ast.parse(path.read_text()) for path in SOURCES}
 
 TWICE = {

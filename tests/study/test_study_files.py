@@ -126,10 +126,3 @@ def test_the_shipped_study_asks_the_four_questions():
     assert all(word in questions for word in ("near the ray", "dense medium", "loose majorant", "high-frequency grid"))
     used = {name_of(method).split(" (")[0] for scene in study.scenes for method in scene.estimators}
     assert used == set(METHODS)
-
-
-def test_the_study_in_the_readme_can_be_measured(tmp_path):
-    text = (Path(__file__).resolve().parents[2] / "README.md").read_text()
-    (example,) = [part.split("```")[0] for part in text.split("```toml\n")[1:]]
-    (tmp_path / "study.toml").write_text(example)
-    prepare(cells_of(read_study(tmp_path / "study.toml")))

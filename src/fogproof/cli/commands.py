@@ -20,6 +20,7 @@ from fogproof.errors import FogproofError
 _COMMANDS = {
     "verify": "Check every sampler and estimator against its reference.",
     "list": "Show the cases of the catalogue.",
+    "check": "Judge somebody else's program over a pipe, or a file of samples.",
     "oracle": "Answer JSON requests with reference values and error bounds.",
     "golden": "Write reference values with error bounds for offline test suites.",
     "plan": "Say which terms a scene needs, and which methods serve it.",

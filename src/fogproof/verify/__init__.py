@@ -1,0 +1,22 @@
+"""Cases against their references: choosing them, running them, and the record of the run."""
+
+from fogproof.verify.records import ALPHA, SCHEMA, environment, record, reproduce
+from fogproof.verify.results import Result, TwinResult, exit_code
+from fogproof.verify.running import case_seed, run, run_case
+from fogproof.verify.selection import select, shares
+
+__all__ = [
+    "ALPHA",
+    "SCHEMA",
+    "Result",
+    "TwinResult",
+    "case_seed",
+    "environment",
+    "exit_code",
+    "record",
+    "reproduce",
+    "run",
+    "run_case",
+    "select",
+    "shares",
+]

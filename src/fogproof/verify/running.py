@@ -1,0 +1,136 @@
+"""Running cases: each inside its share of one false-alarm budget, and none at the cost of another's result."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib.util
+import os
+import sys
+import time
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+from fogproof.catalogue import Case
+from fogproof.checks import batch_generator
+from fogproof.checks.limits import end_isolated, isolated
+from fogproof.errors import FogproofError, NotInstalledError
+from fogproof.verify.results import Result, Status, TwinResult
+from fogproof.verify.selection import shares, whole
+
+_PACKAGES = {"mitsuba": ("Mitsuba 3", "mitsuba"), "miepython": ("miepython", "mie")}
+"""Name and extra of each module that a case may need."""
+_TWIN_SAMPLES = 20_000
+"""A planted error is gross: most twins are rejected by so few samples. Those that are not get all that their case has."""
+
+
+def run(
+    cases: list[Case],
+    *,
+    seed: int,
+    alpha: float,
+    workers: int,
+    twins: bool = False,
+    time_limit: float | None = None,
+) -> Iterator[Result]:
+    """Run cases on threads, yielding each result as it is ready; with `twins`, the broken twin of each as well.
+
+    A case's share of alpha is set by the weights of the whole catalogue, file or package it is from, whichever cases are run:
+    choosing some of them does not change any verdict. Its random numbers depend on `seed` and its name alone: neither do the
+    workers. Cases of a file or a package run in a process of their own, and the catalogue's as well if there is a limit.
+
+    time_limit  most seconds a case may take, None for any
+    """
+    parts = shares(cases, alpha)
+    totals = {origin: sum(case.weight for case in whole(origin)) for origin in parts}
+    pool = ThreadPoolExecutor(max_workers=workers)
+    try:
+        jobs = []
+        for case in cases:
+            share = parts[case.origin] * case.weight / totals[case.origin]
+            alone = case.origin or time_limit is not None
+            job = partial(run_case_alone, time_limit=time_limit) if alone else run_case
+            jobs.append(pool.submit(job, case, seed, share, twins))
+        for done in as_completed(jobs):
+            yield done.result()
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)
+        end_isolated()
+        pool.shutdown(wait=True)
+
+
+def run_case_alone(case: Case, seed: int, alpha: float, twins: bool = False, time_limit: float | None = None) -> Result:
+    """Run one case in a process of its own, so that nothing it does to the process costs another case's result."""
+    started = time.perf_counter()
+    here = os.getcwd() if case.origin else ""
+    try:
+        result = isolated(partial(_in_process, here, case.origin, case.name, seed, alpha, twins), time_limit)
+    except FogproofError as error:
+        return Result(case, "error", None, str(error), time.perf_counter() - started)
+    return replace(result, case=case)
+
+
+def _in_process(folder: str, origin: str, name: str, seed: int, alpha: float, twins: bool) -> Any:
+    """Run the case of a name; the result goes back without the case, which no pickle can hold."""
+    if folder:
+        os.chdir(folder)  # the server of processes began somewhere else, maybe
+    with contextlib.redirect_stdout(sys.stderr):
+        (case,) = (case for case in whole(origin) if case.name == name)
+        return replace(run_case(case, seed, alpha, twins), case=None)  # type: ignore[arg-type]
+
+
+def run_case(case: Case, seed: int, alpha: float, twins: bool = False) -> Result:
+    """Run one case; whatever goes wrong in it is its result, never the end of the run."""
+    result = _run_subject(case, seed, alpha)
+    again = twins and case.twin is not None and result.status != "skipped"
+    return replace(result, twin=run_twin(case, seed, alpha)) if again else result
+
+
+def run_twin(case: Case, seed: int, alpha: float) -> TwinResult:
+    """Put the broken twin of a case to the same checks, inside the same false-alarm probability."""
+    started = time.perf_counter()
+    few = min(_TWIN_SAMPLES, case.samples)
+    try:
+        verdict = case.run(alpha, case_seed(seed, case.name), few, twin=True)
+        if verdict.outcome != "rejected" and few < case.samples:
+            verdict = case.run(alpha, case_seed(seed, case.name), twin=True)
+    except Exception as error:  # the same as of a subject: a defect of one twin is its own result
+        return TwinResult("error", seconds=time.perf_counter() - started, reason=f"{type(error).__name__}: {error}")
+    rejecting = [finding for finding in verdict.findings if finding.outcome == "rejected"]
+    return TwinResult(
+        verdict.outcome,
+        tuple(finding.check for finding in rejecting),
+        verdict.cause,
+        min((finding.p_value for finding in rejecting if finding.p_value is not None), default=None),
+        verdict.samples,
+        time.perf_counter() - started,
+    )
+
+
+def _run_subject(case: Case, seed: int, alpha: float) -> Result:
+    started = time.perf_counter()
+    try:
+        if case.needs and importlib.util.find_spec(case.needs) is None:
+            raise NotInstalledError(*_PACKAGES[case.needs])
+        verdict = case.run(alpha, case_seed(seed, case.name))
+    except NotInstalledError as error:
+        return Result(case, "skipped", None, str(error), time.perf_counter() - started)
+    except FogproofError as error:
+        return Result(case, "error", None, str(error), time.perf_counter() - started)
+    except Exception as error:  # a defect of a case must not cost the other cases' results
+        return Result(case, "error", None, f"{type(error).__name__}: {error}", time.perf_counter() - started)
+    status: Status
+    if verdict.outcome == case.expected:
+        status = "passed" if case.expected == "not rejected" else "known"
+    elif case.expected != "not rejected":
+        status = "surprise"
+    else:
+        status = "rejected" if verdict.outcome == "rejected" else "inconclusive"
+    return Result(case, status, verdict, case.reason, time.perf_counter() - started)
+
+
+def case_seed(seed: int, name: str) -> int:
+    """Return the seed of a case: no two cases of a run share random numbers."""
+    return int(batch_generator(seed, name, 0, 0).integers(2**63))
