@@ -1,8 +1,8 @@
 """What rounding can move across the edges of cells, charged where it arises.
 
-A point is known to a few units in the last place of its coordinates. What happens inside a sampler shows where the same uniforms are
-given in double precision: they lead elsewhere by just as much as single precision is off. Where they lead to the same point, nothing
-shows; then a coordinate made of coarse numbers may be off by a few of their steps.
+A point is known to a few units in the last place of its coordinates. What happens inside a sampler shows where the same uniforms
+are given in double precision: they lead elsewhere by just as much as single precision is off. Where they lead to the same point,
+nothing shows; then a coordinate made of coarse numbers may be off by a few of their steps.
 """
 
 from __future__ import annotations

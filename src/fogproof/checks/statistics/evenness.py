@@ -1,7 +1,7 @@
 """Are the counts of one call as uneven as those of independent samples?
 
-Points of a call that are stratified, a Latin hypercube or a low-discrepancy sequence, in whatever order, fill cells too evenly: every
-call has about the same counts. Held against each other, calls need no known probabilities: Pearson's statistic of their
+Points of a call that are stratified, a Latin hypercube or a low-discrepancy sequence, in whatever order, fill cells too evenly:
+all calls have about the same counts. Held against each other, calls need no known probabilities: Pearson's statistic of their
 homogeneity lies in its lower tail.
 """
 
