@@ -32,11 +32,14 @@ from fogproof.domains import (
     UnitSquare,
 )
 from fogproof.errors import FogproofError, InvalidValueError, UnsupportedError
+from fogproof.scene import cameras as _cameras
 from fogproof.scene import lights as _lights
 from fogproof.scene import media as _media
 from fogproof.scene import occluders as _occluders
 from fogproof.scene import phase as _phase
 from fogproof.scene import surfaces as _surfaces
+from fogproof.scene.cameras import *  # noqa: F403
+from fogproof.scene.image_scenes import ImageScene
 from fogproof.scene.lights import *  # noqa: F403
 from fogproof.scene.media import *  # noqa: F403
 from fogproof.scene.occluders import *  # noqa: F403
@@ -69,7 +72,7 @@ if TYPE_CHECKING:
         samples_for,
     )
     from fogproof.runs import Run
-    from fogproof.scene.files import read_scene
+    from fogproof.scene.files import read_image_scene, read_scene
     from fogproof.scene.volume_files import read_voxel_grid
     from fogproof.scene_estimator import estimator_for
 
@@ -88,6 +91,7 @@ __all__ = [
     "FogproofError",
     "HalfLine",
     "HalfSpace",
+    "ImageScene",
     "InconclusiveError",
     "Interval",
     "InvalidValueError",
@@ -129,10 +133,12 @@ __all__ = [
     "compare_estimators",
     "estimator_for",
     "fresh_seed",
+    "read_image_scene",
     "read_scene",
     "read_voxel_grid",
     "samples_for",
 ]
+__all__ += _cameras.__all__
 __all__ += _lights.__all__
 __all__ += _media.__all__
 __all__ += _occluders.__all__
@@ -161,6 +167,7 @@ _LAZY = {
     "samples_for": "fogproof.checks",
     "Run": "fogproof.runs",
     "estimator_for": "fogproof.scene_estimator",
+    "read_image_scene": "fogproof.scene.files",
     "read_scene": "fogproof.scene.files",
     "read_voxel_grid": "fogproof.scene.volume_files",
 }
