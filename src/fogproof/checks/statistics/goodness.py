@@ -35,6 +35,7 @@ EXPLAINED = "; rounding explains any difference there could be: nothing can be t
 _FEWEST = 4  # cells along each axis of the plane
 _LEAST = 20.0  # samples expected in a cell: the chi-square law is then accurate far into its tail
 _BLURRED = 0.1  # standard deviations of a count: an expectation known less well makes a test inconclusive
+_CONTINUOUS = 8  # cells: with fewer, the statistic takes few values
 _EXACT = 0.01  # standard deviations: an expectation known better leaves p-values uniform
 _MOVED = 0.1  # of probability that rounding may move: where that is not seen, nothing is known
 
@@ -165,7 +166,7 @@ def chi_square(
     if outcome == "inconclusive":
         coarse = "; the expected masses are known too coarsely to tell: give a cdf, or a smoother pdf"
         message += coarse if blurred else EXPLAINED
-    exact = bool(np.all(slack <= _EXACT * sigma))
+    exact = bool(np.all(slack <= _EXACT * sigma)) and cells >= _CONTINUOUS
     cause = "shape" if outcome == "rejected" else ""
     seen = math.sqrt(bartlett * chi_square_detected(cells - 1, alpha, MISS) / n) + hides
     resolution = Resolution(unevenness(cells), seen, MISS)

@@ -25,6 +25,7 @@ LEVELS = len(_EDGES) + 1
 _LEAST = 10.0  # variance of the sum of a cell whose square may enter a chi-square
 _NORMAL = 50.0  # variance from which on a sum's tail is the normal one, corrected for skewness
 _SKEW = 0.5  # largest exponent of that correction
+_THIRD = 0.3  # of the samples of a cell: a level at which more would have to be missing is too fine to speak of
 _TELLING = 100.0  # variance of all residuals: with less, nothing is said
 
 
@@ -208,12 +209,17 @@ def _largest(name: str, describe: Callable[[int, int], str], sums: Sums, alpha: 
 
 
 def _reach(sums: Sums, depths: int, alpha: float) -> Resolution | None:
-    """Return the factor on the pdf that is found in any one cell, of the deepest level whose cells all have enough coins."""
+    """Return the factor on the pdf that is found in any one cell, of the deepest level whose cells have coins enough.
+
+    With V coins in doubt in a cell, samples fewer by a share s lie about s sqrt(V) standard deviations off: the pdf is then too
+    large by the factor 1 / (1 - s).
+    """
     for depth in range(depths, 0, -1):
-        least = float(_folded(sums.cells, depth)[1].min())
-        if 1 << depth <= sums.cells.shape[1] and least >= _NORMAL:
+        if 1 << depth <= sums.cells.shape[1]:
             z = normal_quantile(alpha / (2.0 * depths * (1 << depth))) + normal_quantile(MISS)
-            step = z / math.sqrt(least)
-            kind = f"factor on the pdf in one of {1 << depth} cells, off 1 by more than that,"
-            return Resolution(kind, step * (1 + step), MISS)
+            share = z / math.sqrt(max(float(_folded(sums.cells, depth)[1].min()), 1e-300))
+            share += 0.5 * share**2  # what the tail is wider for skewness, or for Bennett's bound
+            if share <= _THIRD:
+                kind = f"factor on the pdf in one of {1 << depth} cells, off 1 by more than that,"
+                return Resolution(kind, share / (1 - share), MISS)
     return None
