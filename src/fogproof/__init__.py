@@ -71,6 +71,7 @@ if TYPE_CHECKING:
         fresh_seed,
         samples_for,
     )
+    from fogproof.gradient_check import check_gradient
     from fogproof.runs import Run
     from fogproof.scene.files import read_image_scene, read_scene
     from fogproof.scene.volume_files import read_voxel_grid
@@ -126,6 +127,7 @@ __all__ = [
     "check_convergence",
     "check_estimator",
     "check_family",
+    "check_gradient",
     "check_mis",
     "check_reciprocity",
     "check_sampler",
@@ -165,6 +167,7 @@ _LAZY = {
     "compare_estimators": "fogproof.checks",
     "fresh_seed": "fogproof.checks",
     "samples_for": "fogproof.checks",
+    "check_gradient": "fogproof.gradient_check",
     "Run": "fogproof.runs",
     "estimator_for": "fogproof.scene_estimator",
     "read_image_scene": "fogproof.scene.files",
