@@ -86,8 +86,8 @@ def agreement(
     effect = float(np.max(gap / np.maximum(np.abs(right), 1e-300), initial=0.0))
     if not np.all(gap <= slack):
         message = f"{claimed[worst]:.9g} against {right[worst]:.9g}, at {at} {shorten(points[worst])}"
-        ratio = claimed / np.where(right == 0, np.nan, right)
-        constant = np.nanmax(ratio) - np.nanmin(ratio) < sharp * abs(np.nanmean(ratio))
+        ratio = (claimed / np.where(right == 0, np.nan, right))[right != 0]
+        constant = len(ratio) > 0 and np.ptp(ratio) < sharp * abs(np.mean(ratio))
         cause = "normalisation" if constant else "wrong formula"
         return Finding(name, "rejected", message, effect=effect, cause=cause)
     return Finding(name, "not rejected", f"equal within rounding at {len(right)} places", effect=effect)

@@ -30,6 +30,7 @@ _COARSE = 32  # cells along each axis of the plane
 _FINEST_PLANE = 512
 _INDEPENDENT = 1e-4  # axes are independent if no coarse cell differs by more than this share
 _NO_BLUR = 1e-12  # of probability: what double precision does
+_LAST_PLACES = 16  # units in the last place that a given map may be off
 _REGIONS = 64  # cells of a pilot along each axis
 
 
@@ -244,22 +245,22 @@ def pilot_grid(labels: tuple[str, ...], u: np.ndarray) -> Grid:
     return Grid(tuple(marginals), None)
 
 
-def unit_square_grid(labels: tuple[str, str], samples: int) -> Grid:
-    """Return the cells of the unit square, where a right sampler's points are uniform under their Rosenblatt map."""
-    cells = cells_wanted(samples, 2)
-    edges = np.arange(cells + 1) / cells
-    error, none, lookup = np.full(cells + 1, 1e-14), np.zeros(cells + 1), Lookup.of(edges)
+def unit_cube_grid(labels: tuple[str, ...], samples: int, roundoff: float) -> Grid:
+    """Return the cells of the unit cube, where a right sampler's points are uniform under a given map."""
+    cells = cells_wanted(samples, min(len(labels), 2))
+    edges, slack = np.arange(cells + 1) / cells, max(_LAST_PLACES * roundoff, 1e-14)
+    error, none, lookup = np.full(cells + 1, slack), np.zeros(cells + 1), Lookup.of(edges)
     marginals = tuple(
-        Marginal(f"cdf of {label}", edges, edges, edges, none, error, none, True, lookup, lambda c: c)
-        for label in labels
+        Marginal(label, edges, edges, edges, none, error, none, True, lookup, lambda c: c) for label in labels
     )
+    if len(labels) != 2:
+        return Grid(marginals, None)
     size = 1 << int(np.clip(0.5 * np.log2(max(samples, 1) / 2), np.log2(_COARSE), np.log2(_FINEST_PLANE)))
     rows = (np.arange(cells) * size) // cells
     mass = np.full((_COARSE, _COARSE), _COARSE**-2.0)
     share, zero = np.full(size, 1 / size), np.zeros(size + 1)
-    return Grid(
-        marginals, GridPlane((rows, rows), (share, share), zero, zero[1:], mass, np.full_like(mass, 1e-14), True)
-    )
+    error = np.full_like(mass, slack)
+    return Grid(marginals, GridPlane((rows, rows), (share, share), zero, zero[1:], mass, error, True))
 
 
 def _masses(leaves: Leaves, first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
