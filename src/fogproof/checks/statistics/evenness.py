@@ -68,5 +68,5 @@ def _homogeneity(counts: np.ndarray) -> tuple[float, int]:
     if cells < 2:
         return 0.0, 0
     statistic = float(np.sum((counts[:, used] - expected[:, used]) ** 2 / expected[:, used]))
-    rest = counts.shape[1] - cells
-    return statistic, (len(n) - 1) * (cells - (rest == 0))
+    # The other cells may never be hit, as between two values; one degree fewer is right then, and safe where they are.
+    return statistic, (len(n) - 1) * (cells - 1)
