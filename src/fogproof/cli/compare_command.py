@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from fogproof.cli.terminal import say
-from fogproof.images.compare import ALPHA, TOLERANCE, Comparison, compare_image, compare_pictures
+from fogproof.images.compare import ALPHA, TOLERANCE, ImageComparison, compare_image, compare_pictures
 
 CODES = {"not rejected": 0, "rejected": 1, "inconclusive": 3}
 SCENES = (".toml", ".json")
@@ -92,7 +92,7 @@ def command(
     return CODES[done.verdict.outcome]
 
 
-def _tell(done: Comparison, as_json: bool) -> None:
+def _tell(done: ImageComparison, as_json: bool) -> None:
     if as_json:
         from fogproof.images.report import record_of
 

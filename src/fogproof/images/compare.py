@@ -30,7 +30,7 @@ TOLERANCE = 1e-5
 
 
 @dataclass(frozen=True)
-class Comparison:
+class ImageComparison:
     """A verdict on an image, and what it rests on.
 
     ratios      of the means of image and reference, one a channel, with its interval
@@ -59,7 +59,7 @@ def compare_image(
     samples: int | None = None,
     correlated: bool = False,
     explain: bool = True,
-) -> Comparison:
+) -> ImageComparison:
     """Compare one image, or several independent renders of it, with the oracle's image of a scene.
 
     reference   the oracle's image, where it is there already
@@ -103,7 +103,7 @@ def compare_image(
         diagnosis=diagnosis,
         unchecked=tuple(unchecked),
     )
-    return Comparison(verdict, ratios(found, picture.names), picture, found, how, scene)
+    return ImageComparison(verdict, ratios(found, picture.names), picture, found, how, scene)
 
 
 def compare_pictures(
@@ -114,7 +114,7 @@ def compare_pictures(
     alpha: float = ALPHA,
     layer: str = "",
     correlated: bool = False,
-) -> Comparison:
+) -> ImageComparison:
     """Compare two images that should show the same, each of one or several independent renders, without an oracle.
 
     Pixel by pixel their difference has mean 0 and the noise of both (Welch 1947); what both have wrong is not seen.
@@ -142,7 +142,7 @@ def compare_pictures(
         tuple(findings), alpha, int(good.sum()), 0, time.perf_counter() - started, settings,
         "different-images" if rejected else "", unchecked=tuple(unchecked),
     )  # fmt: skip
-    return Comparison(verdict, ratios(found, a.names), a, found, how, None)
+    return ImageComparison(verdict, ratios(found, a.names), a, found, how, None)
 
 
 def _neighbourhood(value: np.ndarray) -> np.ndarray:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from fogproof.errors import NotInstalledError
-from fogproof.images.compare import Comparison
+from fogproof.images.compare import ImageComparison
 from fogproof.images.formats import format_of
 from fogproof.images.maps import maps, picture_png, z_png
 from fogproof.reports.charts.colours import PAPER
@@ -23,7 +23,7 @@ WORST = 8
 """Tiles that are listed."""
 
 
-def record_of(done: Comparison) -> dict[str, Any]:
+def record_of(done: ImageComparison) -> dict[str, Any]:
     """Return a comparison, JSON-ready."""
     scene = done.scene
     return {
@@ -46,7 +46,7 @@ def record_of(done: Comparison) -> dict[str, Any]:
     }
 
 
-def write_comparison(done: Comparison, folder: Path) -> Path:
+def write_comparison(done: ImageComparison, folder: Path) -> Path:
     """Write results.json, z-map and p-values as PNG and EXR, and the page; return the page's path."""
     found = maps(done.picture, done.found)
     record = record_of(done) | {
