@@ -50,7 +50,7 @@ KINDS = {
     "declared bounds": (uniform, lambda off: about(0.5, off), {"bounds": (0.0, 1.0)}),
     "variance": (uniform, lambda off: about(0.5, 0.0), None),
     "variance about an uncertain mean": (
-        uniform, lambda off: about(0.5, np.clip(off, -0.9, 0.9)), {"variance": 1 / 12, "bounds": (0, 1)}),
+        uniform, lambda off: Reference(0.5 + 0.1 * np.clip(off, -0.9, 0.9), 0.1), {"variance": 1 / 12, "bounds": (0, 1)}),
     "cost": (costly, lambda off: 0.5, None),
     "orders": (ordered, lambda off: {1: about(0.25, off), 2: about(0.25, -off)}, {}),
     "light tails": (uniform, lambda off: about(0.5, off), {"tails": "light", "samples": 4000}),
@@ -74,6 +74,15 @@ def test_of_estimators(name, side):
         if "about an" in name:
             outcomes = {"not rejected"}
         assert verdict.outcome in outcomes, (off, str(verdict))
+
+
+def test_bets_on_rare_bright_values_know_the_error():
+    def rare(rng, n):
+        return 50 * (rng.random(n) < 2e-3) * rng.random(n)
+
+    right = check_estimator(rare, Reference(0.02, 0.031), nonnegative=True, samples=N, alpha=1e-6)
+    assert right.outcome != "rejected", str(right)
+    assert check_estimator(rare, Reference(0.005, 0.005), nonnegative=True, samples=N).outcome == "rejected"
 
 
 @pytest.mark.parametrize("off", [0.9, -0.9])
