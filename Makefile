@@ -8,10 +8,10 @@ BIN    := $(VENV)/bin
 export OPENBLAS_NUM_THREADS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help verify gallery study test lint format calibrate field-bugs repeat families oracle-docs fuzz-oracle oracle-hard kill-study torture try-wheel golden bench clean
+.PHONY: help verify gallery study test lint format calibrate field-bugs repeat families oracle-docs fuzz-oracle oracle-hard kill-study torture try-wheel golden bench mutants mutants-sample clean
 
 help:  ## list the targets
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 verify: $(VENV)/.installed  ## every sampler and estimator, and its broken twin, against its reference; the page lands in build/report
 	$(BIN)/fogproof verify --twins --report build/report
@@ -76,6 +76,13 @@ try-wheel: $(VENV)/bin/python  ## the built wheel in a fresh environment: right 
 
 golden: $(VENV)/.installed-test  ## prove the golden tables again, by ball arithmetic
 	$(BIN)/python tools/make_golden.py --check
+
+mutants: $(VENV)/.installed-test  ## realistic errors planted in our own source, one at a time: do the tests see them? hours, resumable
+	$(BIN)/python tools/mutants --wide
+	$(BIN)/python tools/mutants --table
+
+mutants-sample: $(VENV)/.installed-test  ## thirty of them, drawn by SEED
+	$(BIN)/python tools/mutants --sample 30 --seed $(or $(SEED),1)
 
 clean:  ## remove the environment and everything built
 	rm -rf $(VENV) build
