@@ -72,6 +72,7 @@ if TYPE_CHECKING:
         samples_for,
     )
     from fogproof.gradient_check import check_gradient
+    from fogproof.relation_check import check_relations
     from fogproof.runs import Run
     from fogproof.scene.files import read_image_scene, read_scene
     from fogproof.scene.volume_files import read_voxel_grid
@@ -130,6 +131,7 @@ __all__ = [
     "check_gradient",
     "check_mis",
     "check_reciprocity",
+    "check_relations",
     "check_sampler",
     "check_streams",
     "compare_estimators",
@@ -168,6 +170,7 @@ _LAZY = {
     "fresh_seed": "fogproof.checks",
     "samples_for": "fogproof.checks",
     "check_gradient": "fogproof.gradient_check",
+    "check_relations": "fogproof.relation_check",
     "Run": "fogproof.runs",
     "estimator_for": "fogproof.scene_estimator",
     "read_image_scene": "fogproof.scene.files",
