@@ -77,15 +77,7 @@ def rod_reflectance_orders(length: FloatArray, count: Count, g: FloatArray = 0.0
     count   the highest order, a whole number >= 0
     g       (...) mean cosine in [-1, 1]; it broadcasts against the length
     """
-    _, L, g = _checked(0.0, length, g)
-    return taylor_coefficients(
-        lambda c: _reflectance(c, 1 - c, L[..., None], g[..., None]),
-        checked_count("count", count),
-        known=lambda c: _known(_reflectance, c, L, g),
-        source=SOURCE,
-        shares=CIRCLES,
-        growth=_collides_again(L),
-    )
+    return _orders(_reflectance, length, count, g)
 
 
 @quantity(
@@ -101,15 +93,7 @@ def rod_transmittance_orders(length: FloatArray, count: Count, g: FloatArray = 0
     count   the highest order, a whole number >= 0
     g       (...) mean cosine in [-1, 1]; it broadcasts against the length
     """
-    _, L, g = _checked(0.0, length, g)
-    return taylor_coefficients(
-        lambda c: _transmittance(c, 1 - c, L[..., None], g[..., None]),
-        checked_count("count", count),
-        known=lambda c: _known(_transmittance, c, L, g),
-        source=SOURCE,
-        shares=CIRCLES,
-        growth=_collides_again(L),
-    )
+    return _orders(_transmittance, length, count, g)
 
 
 def _checked(albedo: Any, length: Any, g: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -117,6 +101,19 @@ def _checked(albedo: Any, length: Any, g: Any) -> tuple[np.ndarray, np.ndarray, 
     require("g", g, np.abs(g) <= 1, "must lie in [-1, 1]", "it is the mean cosine")
     arrays = np.broadcast_arrays(c, L, g)
     return arrays[0], arrays[1], arrays[2]
+
+
+def _orders(function: Any, length: Any, count: Any, g: Any) -> Reference:
+    """Return the coefficients of a formula in powers of the albedo."""
+    _, L, g = _checked(0.0, length, g)
+    return taylor_coefficients(
+        lambda c: function(c, 1 - c, L[..., None], g[..., None]),
+        checked_count("count", count),
+        known=lambda c: _known(function, c, L, g),
+        source=SOURCE,
+        shares=CIRCLES,
+        growth=_collides_again(L),
+    )
 
 
 def _collides_again(L: np.ndarray) -> float:

@@ -25,7 +25,8 @@ def read_scene(path: str | Path) -> Scene:
         table = tomllib.loads(text)
     except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise InvalidInputError(f"{path} is not valid TOML: {error}", str(path)) from None
-    return read_fields({"scene": Scene}, {"scene": table}, str(path))["scene"]
+    scene: Scene = read_fields({"scene": Scene}, {"scene": table}, str(path))["scene"]
+    return scene
 
 
 def read_fields(types: dict[str, Any], data: Any, origin: str) -> dict[str, Any]:
