@@ -80,7 +80,7 @@ $(VENV)/bin/python:
 	$(BIN)/python -m pip install --quiet --upgrade 'pip>=25.1'
 
 $(VENV)/.installed: $(VENV)/bin/python pyproject.toml
-	$(BIN)/python -m pip install --quiet --editable '.[mie,mitsuba]'
+	$(BIN)/python -m pip install --quiet --editable '.[mie,mitsuba,images]'
 	@touch $@
 
 $(VENV)/.installed-test: $(VENV)/.installed

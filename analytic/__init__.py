@@ -6,6 +6,10 @@ exact binary64 numbers.
 
 from fogproof.analytic.airlight.integral import airlight_integral, airlight_table
 from fogproof.analytic.airlight.single_scattering import single_scattering
+from fogproof.analytic.derivatives.gradient import gradient
+from fogproof.analytic.derivatives.path_length import path_length_mean, path_length_transform, path_length_variance
+from fogproof.analytic.derivatives.scattering_counts import scattering_count_law, scattering_count_mean
+from fogproof.analytic.images.image import image
 from fogproof.analytic.media.coefficients import Coefficients, coefficients
 from fogproof.analytic.multiple.ball import (
     ball_albedo,
@@ -88,15 +92,20 @@ __all__ = [
     "emitted_radiance",
     "free_path",
     "golden_values",
+    "gradient",
     "half_space_brdf",
     "half_space_reflectance",
     "half_space_reflectance_orders",
     "half_space_spherical_albedo",
+    "image",
     "mean_displacement",
     "mean_path_length",
     "mean_scatterings",
     "mean_square_displacement",
     "optical_thickness",
+    "path_length_mean",
+    "path_length_transform",
+    "path_length_variance",
     "phase_cdf",
     "phase_legendre_moments",
     "phase_mean_cosine",
@@ -114,6 +123,8 @@ __all__ = [
     "rod_reflectance_orders",
     "rod_transmittance",
     "rod_transmittance_orders",
+    "scattering_count_law",
+    "scattering_count_mean",
     "single_scattering",
     "single_scattering_second_moment",
     "single_scattering_variance",

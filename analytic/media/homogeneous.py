@@ -15,6 +15,9 @@ from fogproof.scene import Medium, Ray
 
 SOURCE = "Bouguer 1729, Beer 1852; Chandrasekhar 1960, Radiative Transfer, section 7"
 
+LINEAR_IN = ("sigma_t", "sigma_a", "sigma_s")
+"""What sigma_t is proportional to wherever it stands alone: sums of these with weights >= 0, at the same albedo."""
+
 
 def coefficients(medium: Medium, at: Points) -> Coefficients:
     """Return what is the same everywhere."""

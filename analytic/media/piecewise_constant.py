@@ -22,6 +22,9 @@ from fogproof.analytic.rays.compositing import composite
 from fogproof.contracts import Reference
 from fogproof.scene import PiecewiseConstantMedium, Ray
 
+LINEAR_IN = ("sigma_t",)
+"""What sigma_t is proportional to wherever it stands alone: sums of these with weights >= 0, at the same albedo."""
+
 
 def coefficients(medium: PiecewiseConstantMedium, at: Points) -> Coefficients:
     """Return those of the layer that a point lies in."""

@@ -32,6 +32,9 @@ Corners = list[tuple[tuple[np.ndarray, ...], np.ndarray]]
 
 GAUSS = (0.5 - 0.5 / np.sqrt(3.0), 0.5 + 0.5 / np.sqrt(3.0))
 
+LINEAR_IN = ("sigma_t",)
+"""What sigma_t is proportional to wherever it stands alone: sums of these with weights >= 0, at the same albedo."""
+
 
 def is_trilinear(medium: VoxelGrid) -> bool:
     """Return whether the grid interpolates between its voxels."""

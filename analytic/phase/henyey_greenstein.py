@@ -34,6 +34,15 @@ def pdf(phase: HenyeyGreenstein, mu: np.ndarray) -> tuple[np.ndarray, np.ndarray
     return value, 8 * EPS * value
 
 
+def most_near(phase: HenyeyGreenstein, field: str, radius: float) -> float:
+    """Return what 4 pi |f| is at most, for all mu, at complex g within a radius of this one: (1 + r^2)/(1 - r)^3, r = |g| + radius.
+
+    D^2 = (1 - g exp(i theta))(1 - g exp(-i theta)) is never smaller than (1 - r)^2 there.
+    """
+    r = abs(phase.g) + radius
+    return (1 + r * r) / (1 - r) ** 3 if field == "g" and r < 1 else np.inf
+
+
 def cdf(phase: HenyeyGreenstein, mu: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return F(mu) = (1 - g)(1 + mu) / (D (1 + g + D)); relative error 6 eps.
 

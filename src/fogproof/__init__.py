@@ -15,11 +15,14 @@ from fogproof import domains as _domains
 from fogproof.contracts import Draw, Draws, Estimator, Reference, Sampler
 from fogproof.domains import *  # noqa: F403
 from fogproof.errors import FogproofError, InvalidValueError, UnsupportedError
+from fogproof.scene import cameras as _cameras
 from fogproof.scene import lights as _lights
 from fogproof.scene import media as _media
 from fogproof.scene import occluders as _occluders
 from fogproof.scene import phase as _phase
 from fogproof.scene import surfaces as _surfaces
+from fogproof.scene.cameras import *  # noqa: F403
+from fogproof.scene.image_scenes import ImageScene
 from fogproof.scene.lights import *  # noqa: F403
 from fogproof.scene.media import *  # noqa: F403
 from fogproof.scene.occluders import *  # noqa: F403
@@ -32,7 +35,7 @@ from fogproof.scene.surfaces import *  # noqa: F403
 if TYPE_CHECKING:
     from fogproof.checks import *  # noqa: F403
     from fogproof.runs import Run
-    from fogproof.scene.files import read_scene
+    from fogproof.scene.files import read_image_scene, read_scene
     from fogproof.scene.volume_files import read_voxel_grid
     from fogproof.scene_estimator import estimator_for
 
@@ -44,6 +47,7 @@ __all__ = [
     "Estimator",
     "FogproofError",
     "HalfSpace",
+    "ImageScene",
     "InvalidValueError",
     "Ray",
     "Reference",
@@ -56,9 +60,11 @@ __all__ = [
     "Unbounded",
     "UnsupportedError",
     "estimator_for",
+    "read_image_scene",
     "read_scene",
     "read_voxel_grid",
 ]
+__all__ += _cameras.__all__
 __all__ += _checks.__all__
 __all__ += _domains.__all__
 __all__ += _lights.__all__
@@ -70,6 +76,7 @@ __all__ += _surfaces.__all__
 _LAZY = {
     "Run": "fogproof.runs",
     "estimator_for": "fogproof.scene_estimator",
+    "read_image_scene": "fogproof.scene.files",
     "read_scene": "fogproof.scene.files",
     "read_voxel_grid": "fogproof.scene.volume_files",
 }

@@ -2,6 +2,7 @@
 estimator that is wrong, in whatever way, wins no ranking."""
 
 import copy
+import json
 import math
 from dataclasses import dataclass, replace
 from typing import ClassVar
@@ -10,7 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from study_fixtures import SMALL, drawn, estimator, kinds, study_from
+from study_fixtures import LIT, SMALL, drawn, estimator, kinds, study_from
 
 from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.statistics.tails import binomial_at_most
@@ -298,3 +299,19 @@ def test_a_slower_machine_is_no_slower_estimator(record):
     found = compare(record, after)
     assert found["mood"] == pytest.approx(1e6)
     assert not found["worse"]
+
+
+@pytest.mark.parametrize("intensity", [1e-300, 1e-100, 1e-60, 1e-20, 1e20, 1e60, 1e150, 1e305])
+def test_no_lamp_is_too_dim_or_too_bright(intensity, tmp_path):
+    """What leaves the range of binary64 is told by name; what does not is judged as ever, in any unit."""
+    scene = {
+        **LIT,
+        "light": {**LIT["light"], "intensity": intensity},
+        "estimators": kinds("airlight", "mis", "marched-airlight"),
+    }
+    record = drawn(study_from({**SMALL, "samples": [16, 512], "scenes": [scene]}), tmp_path)
+    json.dumps(record["scenes"][0]["estimators"][0]["moments"], allow_nan=False)
+    for each in record["scenes"][0]["estimators"]:
+        far = any(finding["check"] == "range" for finding in each["findings"])
+        assert far == (not 1e-40 < intensity < 1e40 and each["kind"] != "marched-airlight")
+        assert (each["outcome"] == "rejected") == (each["kind"] == "marched-airlight"), each["findings"]

@@ -72,7 +72,7 @@ def check_family(
     """Test a sampler or an estimator at many parameters; if it is wrong for some, return the simplest one and where they lie.
 
     make        parameter -> a sampler (`sample`, `pdf`, `domain`, `dimensions`; `atoms`, `eval`) or an estimator (`draw`,
-                `reference`)
+                `reference`); a dict `options` of either holds further arguments of its check
     parameters  a Hypothesis strategy, or a sequence of parameters, simple ones first
     members     how many parameters are tried
     samples     most samples of the search; shrinking may take as many again
@@ -199,7 +199,8 @@ def _check(member: Any, samples: int, alpha: float, seed: int, options: Mapping[
     if hasattr(member, "draw"):
         if not hasattr(member, "reference"):
             raise InvalidValueError("make", "must return estimators that have a `reference`", type(member).__name__)
-        return check_estimator(member.draw, member.reference, samples=samples, alpha=alpha, seed=seed, **options)
+        more = {**getattr(member, "options", {}), **options}
+        return check_estimator(member.draw, member.reference, samples=samples, alpha=alpha, seed=seed, **more)
     lacking = [name for name in ("sample", "pdf", "domain", "dimensions") if not hasattr(member, name)]
     if lacking:
         rule = "must return estimators (draw, reference) or samplers (sample, pdf, domain, dimensions)"
@@ -213,7 +214,7 @@ def _check(member: Any, samples: int, alpha: float, seed: int, options: Mapping[
         samples=samples,
         alpha=alpha,
         seed=seed,
-        **{**own, **options},
+        **{**own, **getattr(member, "options", {}), **options},
     )
 
 

@@ -162,11 +162,12 @@ def merged(rows: np.ndarray, starts: np.ndarray) -> np.ndarray:
     mean = np.add.reduceat(n_i * rows[:, _MEAN], starts) / np.maximum(n, 1)
     mean = np.where(n > 0, np.clip(mean, low, high), 0.0)
     d = np.where(n_i > 0, rows[:, _MEAN] - np.repeat(mean, lengths), 0.0)
-    d2 = d * d
-    m2 = rows[:, _M2] + n_i * d2
-    m3 = rows[:, _M3] + 3 * d * rows[:, _M2] + n_i * d2 * d
-    m4 = rows[:, _M4] + 4 * d * rows[:, _M3] + 6 * d2 * rows[:, _M2] + n_i * d2 * d2
-    sums = [np.add.reduceat(m, starts) for m in (m2, m3, m4)]
+    with np.errstate(over="ignore", invalid="ignore"):  # `judgement.out_of_range` refuses such numbers by name
+        d2 = d * d
+        m2 = rows[:, _M2] + n_i * d2
+        m3 = rows[:, _M3] + 3 * d * rows[:, _M2] + n_i * d2 * d
+        m4 = rows[:, _M4] + 4 * d * rows[:, _M3] + 6 * d2 * rows[:, _M2] + n_i * d2 * d2
+        sums = [np.add.reduceat(m, starts) for m in (m2, m3, m4)]
     at_low = np.add.reduceat(np.where(rows[:, _LOW] == np.repeat(low, lengths), rows[:, _AT_LOW], 0.0), starts)
     at_high = np.add.reduceat(np.where(rows[:, _HIGH] == np.repeat(high, lengths), rows[:, _AT_HIGH], 0.0), starts)
     bad = np.add.reduceat(rows[:, _BAD], starts)

@@ -14,7 +14,7 @@ import numpy as np
 from fogproof.checks import Finding
 from fogproof.checks.statistics.heavy import TailEstimate
 from fogproof.checks.statistics.means import mean_test
-from fogproof.checks.statistics.moments import Moments
+from fogproof.checks.statistics.moments import ORDINARY, Moments
 from fogproof.checks.statistics.tails import gamma_above, normal_quantile, student_two_sided
 from fogproof.checks.verdict import Outcome
 from fogproof.contracts import Reference
@@ -49,6 +49,17 @@ def tests_of(cell: Cell) -> int:
     return 1 if cell.points == "sobol" else 3
 
 
+def out_of_range(cell: Cell, levels: Sequence[Level]) -> bool:
+    """Return whether deviations are so large or small that binary64 does not hold their powers, which statistics needs."""
+    if cell.method.axis != "samples" or not levels:
+        return False
+    rows = np.concatenate([level.rows for level in levels])
+    rows = rows[rows[:, 0] > 0]
+    ends = np.array([*rows[:, 5], *rows[:, 6], float(cell.reference.value)])
+    spread = float(ends.max() / 2 - ends.min() / 2) * 2
+    return not (spread == 0 or 1 / ORDINARY < spread < ORDINARY) or float(np.abs(ends).max()) > ORDINARY
+
+
 def judge(cell: Cell, levels: Sequence[Level], variance: Reference | None, alpha: float) -> Judged:
     """Judge what was drawn of a cell; every test has the false-alarm probability alpha."""
     value, error = float(cell.reference.value), float(cell.reference.error)
@@ -59,6 +70,9 @@ def judge(cell: Cell, levels: Sequence[Level], variance: Reference | None, alpha
         findings.append(Finding("finite values", "rejected", f"{bad} realisations are not finite", cause="bias"))
     elif not any(len(level.rows) for level in levels):
         findings.append(Finding("mean", "inconclusive", "nothing has been drawn"))
+    elif out_of_range(cell, levels):
+        rule = f"differ by less than {1 / ORDINARY:.1g}, or reach {ORDINARY:.1g}: their powers leave binary64; choose other units"
+        findings.append(Finding("range", "inconclusive", f"realisations about {value:.3g} {rule}"))
     elif cell.method.axis != "samples":
         findings.append(_exact(cell, levels, value, error))
     elif cell.points == "sobol":
@@ -158,7 +172,7 @@ def _scatter(level: Level, variance: float, alpha: float) -> Finding:
 
 def excess(data: Moments) -> float:
     """Return the excess kurtosis, 0 where nothing varies."""
-    return data.n * data.m4 / data.m2**2 - 3 if data.m2 > 0 else 0.0
+    return data.n * (data.m4 / data.m2) / data.m2 - 3 if data.m2 > 0 else 0.0
 
 
 def _heavy(levels: Sequence[Level], data: Moments, value: float) -> str:

@@ -14,7 +14,7 @@ from fogproof.contracts import Reference
 from fogproof.study.aggregate import Level, pooled
 from fogproof.study.cells import Cell
 from fogproof.study.convergence import Estimate, Falling, Z, falling, rmse, slope
-from fogproof.study.judgement import Judged, excess, inherited, judge, resolution_of
+from fogproof.study.judgement import Judged, excess, inherited, judge, out_of_range, resolution_of
 from fogproof.study.methods.table import kind_of, options_of
 from fogproof.study.speed import Efficiency, spread_of, targets_of, time_of
 
@@ -43,6 +43,7 @@ def measure(cell: Cell, levels: Sequence[Level], alpha: float, twin: Measured | 
     variance = cell.method.variance(cell.scene)
     judged = judge(cell, levels, variance, alpha)
     judged = judged if twin is None else inherited(judged, twin.judged)
+    levels = [] if out_of_range(cell, levels) else levels  # what cannot be summed cannot be measured
     value, error = float(cell.reference.value), float(cell.reference.error)
     rejected = judged.outcome == "rejected"
     data = pooled(np.concatenate([level.rows for level in levels])) if levels else Moments()

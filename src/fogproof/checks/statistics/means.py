@@ -224,4 +224,4 @@ def _lawless(
 def _corrected(p_normal: float, growth: float, z: float, needed: float) -> float:
     """Return the corrected p-value; the correction stops growing where the expansion stops being one."""
     limit = max(needed, (LARGEST_CORRECTION / growth) ** (1 / 3)) if growth > 0 else math.inf
-    return min(1.0, p_normal * math.exp(growth * min(z, limit) ** 3))
+    return min(1.0, p_normal * math.exp((growth ** (1 / 3) * min(z, limit)) ** 3))  # z alone may be as large as 1e300

@@ -1,0 +1,45 @@
+"""Rows of numbers as little-endian bytes, row after row, or as lines of comma-separated text."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+
+Type = Literal["float64", "float32", "text"]
+DTYPES: dict[str, str] = {"float64": "<f8", "float32": "<f4"}
+
+
+def encoded(rows: np.ndarray, kind: Type) -> memoryview:
+    """Return rows (n, k) as bytes; text has as many digits as it takes to be read back exactly."""
+    if kind == "text":
+        if not rows.shape[1]:
+            return memoryview(b"")
+        lines = (",".join(map(repr, row)) for row in np.asarray(rows, dtype=np.float64).tolist())
+        return memoryview("".join(f"{line}\n" for line in lines).encode())
+    return bytes_of(np.ascontiguousarray(rows, dtype=DTYPES[kind]))
+
+
+def bytes_of(array: np.ndarray) -> memoryview:
+    """Return the bytes of a contiguous array, without a copy."""
+    return memoryview(array.reshape(-1).view(np.uint8).data)
+
+
+def from_lines(lines: list[bytes], columns: int) -> np.ndarray:
+    """Return lines of text as rows (n, columns), or raise `ValueError` with the place and what stands there."""
+    rows = np.empty((len(lines), columns))
+    for place, line in enumerate(lines):
+        cells = line.split(b",")
+        try:
+            if len(cells) != columns:
+                raise ValueError
+            rows[place] = [float(cell) for cell in cells]
+        except ValueError:
+            shown = line[:80].decode("utf-8", "replace")
+            raise ValueError(f"row {place + 1} is {shown!r}, not {columns} numbers between commas") from None
+    return rows
+
+
+def swapped(rows: np.ndarray) -> np.ndarray:
+    """Return what the numbers are if their bytes come in the other order."""
+    return rows.byteswap()

@@ -1,0 +1,67 @@
+"""Samples that are already there, as `check_sampler`'s machinery takes them: every row of the file is counted once at most.
+
+The first quarter (16384 rows at most) is the pilot, which sets scales and is not counted; where the check wants a larger one, its
+rows are drawn again. The rest is what is tested, in the order of the file.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from fogproof.checks import Verdict
+from fogproof.checks.prepared import PILOT
+from fogproof.checks.sampler import SamplerCheck
+from fogproof.checks.subject import Subject
+from fogproof.contracts import Draw
+from fogproof.errors import InvalidInputError
+
+LEAST = 200
+"""Rows that a file must have."""
+
+
+class Recorded:
+    """A sampler without a program: it hands out the rows of a `Draw`."""
+
+    def __init__(self, draw: Draw) -> None:
+        self._draw = draw
+        n = len(draw.x)
+        if n < LEAST:
+            raise InvalidInputError(f"there are {n} samples; at least {LEAST} are needed", "file")
+        self.pilot = min(PILOT, n // 4)
+        self._at: int | None = None
+
+    @property
+    def tested(self) -> int:
+        """How many rows are there to be tested."""
+        return len(self._draw.x) - self.pilot
+
+    def begin(self) -> None:
+        """From now on every row is handed out once."""
+        self._at = self.pilot
+
+    def sample(self, rng: np.random.Generator, n: int) -> Draw:
+        """Return the next n rows; before `begin`, and where all have been handed out, some of them again."""
+        if self._at is None:
+            rows = np.arange(n) if n <= self.pilot else rng.integers(self.pilot, size=n)
+        elif self._at + n <= len(self._draw.x):
+            rows = np.arange(self._at, self._at + n)
+            self._at += n
+        else:
+            rows = rng.integers(len(self._draw.x), size=n)
+        x, *others = (None if part is None else part[rows] for part in self._draw)
+        assert x is not None
+        return Draw(x, *others)
+
+
+def check_recorded(
+    recorded: Recorded, subject: Subject, samples: int, resolution: float | None, alpha: float, seed: int | None
+) -> Verdict:
+    """Judge recorded samples; `subject` has `recorded.sample` as its sampler."""
+    check = SamplerCheck.of(subject, resolution, min(samples, recorded.tested), alpha, seed)
+    check = replace(check, prepared=replace(check.prepared, calls=None))  # there is nobody to call
+    recorded.begin()
+    verdict = check.run()
+    kept = tuple(finding for finding in verdict.findings if finding.check != "edge uniforms")
+    return replace(verdict, findings=kept)

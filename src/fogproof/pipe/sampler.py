@@ -1,0 +1,123 @@
+"""A program as a sampler: what `check_sampler` calls becomes questions over the pipe."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from fogproof.checks.subject import UNIT_ROUNDOFF, Precision
+from fogproof.contracts import Draw
+from fogproof.domains import Domain
+from fogproof.pipe.blocks import swapped
+from fogproof.pipe.program import Program
+
+LARGEST_SEED = 2**53
+"""Whole numbers below it are exact in the float64 of every language."""
+
+
+def draw_of(rows: np.ndarray, columns: tuple[str, ...], domain: Domain) -> Draw:
+    """Return rows (n, k) with named columns as a `Draw`."""
+
+    def column(name: str) -> np.ndarray | None:
+        places = [i for i, each in enumerate(columns) if each == name]
+        return None if not places else rows[:, places[0]] if len(places) == 1 else rows[:, places]
+
+    x = rows[:, [i for i, each in enumerate(columns) if each == "x"]]
+    valid = column("valid")
+    return Draw(
+        x if domain.shape else x[:, 0],
+        column("pdf"),
+        column("weight"),
+        column("event"),
+        None if valid is None else valid != 0,
+    )
+
+
+@dataclass(eq=False)
+class PipeSampler:
+    """A program that answers "sample", and "pdf" and "eval" if it says so.
+
+    law      a density that stands in for the program's own, where it answers no "pdf"
+    options  further arguments of `check_sampler`
+    """
+
+    program: Program
+    domain: Domain
+    dimensions: int | None
+    precision: Precision
+    atoms: Mapping[Any, float]
+    parameters: Mapping[str, float]
+    law: Callable[[np.ndarray], np.ndarray] | None = None
+    options: Mapping[str, Any] = field(default_factory=dict)
+    _seen: bool = field(default=False)
+
+    @property
+    def eval(self) -> Callable[[np.ndarray], np.ndarray] | None:
+        """What weights are for, None if the program does not answer that."""
+        return self._eval if "eval" in self.program.greeting.answers else None
+
+    def sample(self, u: Any, n: int | None = None) -> Draw:
+        """Return a `Draw` for uniforms (n, dimensions), or for (rng, n) where the program draws its own numbers."""
+        if n is None:
+            rows, count, seed = np.asarray(u), len(u), 0
+        else:
+            rows, count, seed = np.empty((n, 0)), n, int(u.integers(LARGEST_SEED))
+        columns = self.program.greeting.columns
+        answer = self.program.ask("sample", rows, count, len(columns), seed, self.parameters)
+        draw = draw_of(answer, columns, self.domain)
+        if not self._seen and count >= 64:
+            self._seen = True
+            hint = misread(self.domain, answer, columns, UNIT_ROUNDOFF[self.precision])
+            if hint:
+                raise self.program.refuse(*hint)
+        return draw
+
+    def pdf(self, x: np.ndarray) -> np.ndarray:
+        """Return the density at points x: the program's, or the law that stands in for it."""
+        return self._at("pdf", x, 1)[:, 0] if self.law is None else self.law(x)
+
+    def _eval(self, x: np.ndarray) -> np.ndarray:
+        channels = max(len(self.program.greeting.places("weight")), 1)
+        answer = self._at("eval", x, channels)
+        return answer[:, 0] if channels == 1 else answer
+
+    def _at(self, request: str, x: np.ndarray, columns: int) -> np.ndarray:
+        rows = x.reshape(len(x), -1)
+        return self.program.ask(request, rows, len(x), columns, 0, self.parameters)
+
+
+def misread(domain: Domain, rows: np.ndarray, columns: tuple[str, ...], roundoff: float) -> tuple[str, str] | None:
+    """Return what is plainly wrong with how the numbers are written, in words and as a class; None if nothing is.
+
+    Only where hardly any point lies in the domain as it is read, and nearly all do as it is read otherwise.
+    """
+    places = [i for i, each in enumerate(columns) if each == "x"]
+
+    def good(other: np.ndarray) -> float:
+        x = other[:, places]
+        valid = np.isfinite(x).all(axis=1)
+        with np.errstate(all="ignore"):
+            x = x.astype(np.float64)
+            plain = np.abs(x).max(axis=1, initial=0) < 1e30  # what bytes in a wrong order seldom are
+            tiny = (np.abs(x) < 1e-30) & (x != 0)
+            inside = domain.contains(x if domain.shape else x[:, 0], 16 * roundoff)
+        return float(np.mean(valid & plain & inside & ~tiny.any(axis=1)))
+
+    if good(rows) > 0.1:
+        return None
+    if good(swapped(rows)) > 0.9:
+        return "writes big-endian numbers where little-endian ones are due", "byte order"
+    if rows.dtype == np.float64 and good(_pairs(rows)) > 0.9:
+        return "writes float32 numbers where float64 ones are due", "number type"
+    if good(rows.reshape(rows.shape[1], rows.shape[0]).T) > 0.9:
+        return "writes one coordinate after the other where one sample after the other is due", "layout"
+    return None
+
+
+def _pairs(rows: np.ndarray) -> np.ndarray:
+    """Return the first half of what 8-byte numbers are as 4-byte ones, as rows."""
+    flat = rows.ravel().view(np.float32)
+    return flat[: len(flat) // rows.shape[1] * rows.shape[1]].reshape(-1, rows.shape[1])

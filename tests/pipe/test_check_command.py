@@ -1,0 +1,83 @@
+"""`fogproof check`: exit codes, and where its words go."""
+
+import json
+import sys
+
+import pytest
+from click.testing import CliRunner
+
+from fogproof.cli import main
+from fogproof.cli.check_command import command
+
+ZEROS = """
+import sys
+print('{"fogproof": 1, "type": "text", "columns": ["value"]}', flush=True)
+for line in sys.stdin:
+    n = int(line.split('"n": ')[1].split(",")[0])
+    print('{"n": %d}\\n' % n + "0\\n" * n, end="", flush=True)
+"""
+
+
+def run(tmp_path, spec, *options, source=ZEROS):
+    (tmp_path / "spec.toml").write_text(spec)
+    (tmp_path / "zeros.py").write_text(source)
+    words = ["--exec", f"{sys.executable} -S {tmp_path / 'zeros.py'}", "--spec", str(tmp_path / "spec.toml")]
+    return CliRunner().invoke(command, [*words, *options], standalone_mode=False)
+
+
+@pytest.mark.parametrize(
+    ("spec", "code"),
+    [("reference = 0\nvariance = 0", 0), ("reference = 1\nbounds = [0, 2]", 1), ("reference = 1e-9", 3)],
+)
+def test_exit_codes(tmp_path, spec, code):
+    result = run(tmp_path, spec, "--samples", "2000")
+    assert result.return_value == code, result.output
+
+
+def test_json_is_alone_on_stdout(tmp_path):
+    result = run(tmp_path, "reference = 1\nbounds = [0, 2]", "--json", "--samples", "1000", "--seed", "3")
+    told = json.loads(result.stdout)
+    assert told["outcome"] == "rejected"
+    assert told["reproduce"].startswith("fogproof check --exec")
+    assert "--seed=3" in told["reproduce"]
+
+
+@pytest.mark.parametrize(
+    ("spec", "words"),
+    [
+        ("", "says nothing of what is to be judged"),
+        ("reference = 0.5\ndomain = 'sphere'", "reference is for estimators"),
+        ("domain = 'sphre'", "'sphre'; known are sphere"),
+        ("domain = { kind = 'interval', a = 1, b = 0 }", "must be greater than a"),
+        ("domain = { kind = 'interval', low = 1 }", "domain interval got an unexpected keyword argument 'low'"),
+        ("domain = 'line'\ndimension = 1", "dimension is not a known key"),
+        ("domain = 'line'\ndimensions = 0", "dimensions must be >= 1"),
+        ("reference = '$g'", "$g is no parameter"),
+        ("reference = 0\nscene = 5", "scene"),
+        ("phase = { kind = 'hg' }", "kind 'hg'"),
+        ("phase = { kind = 'rayleigh' }\nmedium = { sigma_a = 1, sigma_s = 0 }", "one density is enough"),
+        ("medium = { sigma_a = 1, sigma_s = 0 }", "medium and ray belong together"),
+        ("reference = 1\nfamily = { g = [] }", "family.g must be a list"),
+        ("reference = 1\nfamily = { g = { from = 1, to = 0 } }", "greater than from"),
+        ("reference = 1 =", "is not valid TOML"),
+        ("domain = 'line'\nevents = { medium = 1 }", "events.medium must be a whole number"),
+        ("quantity = { quantity = 'nothing' }", "'nothing' is not known"),
+        ("domain = 'line'", "is an estimator by its columns"),
+    ],
+)
+def test_bad_specs_are_told_in_a_sentence(tmp_path, spec, words):
+    result = run(tmp_path, spec)
+    assert words in (str(result.exception) if result.exception else result.output)
+
+
+def test_what_cannot_be_started_is_bad_input(tmp_path, capfd):
+    (tmp_path / "spec.toml").write_text("reference = 1")
+    for wrong, said in (
+        ("./nowhere --g 1", "cannot start './nowhere'"),
+        ("'unclosed", "cannot read the command"),
+        ("", "empty"),
+    ):
+        with pytest.raises(SystemExit) as end:
+            main(["check", "--spec", str(tmp_path / "spec.toml"), "--exec", wrong])
+        assert end.value.code == 2
+        assert said in capfd.readouterr().err
