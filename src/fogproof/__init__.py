@@ -34,6 +34,7 @@ from fogproof.scene.surfaces import *  # noqa: F403
 
 if TYPE_CHECKING:
     from fogproof.checks import *  # noqa: F403
+    from fogproof.gradient_check import check_gradient
     from fogproof.runs import Run
     from fogproof.scene.files import read_image_scene, read_scene
     from fogproof.scene.volume_files import read_voxel_grid
@@ -59,6 +60,7 @@ __all__ = [
     "Slab",
     "Unbounded",
     "UnsupportedError",
+    "check_gradient",
     "estimator_for",
     "read_image_scene",
     "read_scene",
@@ -74,6 +76,7 @@ __all__ += _phase.__all__
 __all__ += _surfaces.__all__
 
 _LAZY = {
+    "check_gradient": "fogproof.gradient_check",
     "Run": "fogproof.runs",
     "estimator_for": "fogproof.scene_estimator",
     "read_image_scene": "fogproof.scene.files",
