@@ -218,7 +218,7 @@ class _Claim:
             )
         if finding.outcome == "inconclusive" and known.variance is not None and complete and p > DOUBT:
             message = f"{start}; rare values matter, so tested by Catoni's function and the exact variance"
-            resolution = Resolution(f"bias of {finding.check}", bets.detectable(MISS) + self.error, MISS)
+            resolution = Resolution(f"bias of {finding.check}", bets.detectable(MISS) + self.error, MISS, self.value)
             return replace(
                 finding, outcome="not rejected", message=message, p_value=p, alpha=alpha, resolution=resolution
             )
