@@ -35,6 +35,7 @@ from fogproof.scene.surfaces import *  # noqa: F403
 if TYPE_CHECKING:
     from fogproof.checks import *  # noqa: F403
     from fogproof.gradient_check import check_gradient
+    from fogproof.relation_check import check_relations
     from fogproof.runs import Run
     from fogproof.scene.files import read_image_scene, read_scene
     from fogproof.scene.volume_files import read_voxel_grid
@@ -61,6 +62,7 @@ __all__ = [
     "Unbounded",
     "UnsupportedError",
     "check_gradient",
+    "check_relations",
     "estimator_for",
     "read_image_scene",
     "read_scene",
@@ -77,6 +79,7 @@ __all__ += _surfaces.__all__
 
 _LAZY = {
     "check_gradient": "fogproof.gradient_check",
+    "check_relations": "fogproof.relation_check",
     "Run": "fogproof.runs",
     "estimator_for": "fogproof.scene_estimator",
     "read_image_scene": "fogproof.scene.files",
