@@ -15,11 +15,16 @@ if TYPE_CHECKING:
     from fogproof.checks.estimator import check_estimator
     from fogproof.checks.family import check_family
     from fogproof.checks.generators import check_streams
+    from fogproof.checks.limits import within as within
     from fogproof.checks.mis import check_mis
     from fogproof.checks.planning import samples_for
     from fogproof.checks.reciprocity import check_reciprocity
     from fogproof.checks.sampler import SamplerCheck, check_sampler
+    from fogproof.checks.streams import batch_generator as batch_generator
+    from fogproof.checks.streams import batch_sizes as batch_sizes
     from fogproof.checks.streams import fresh_seed
+    from fogproof.checks.subject import Subject as Subject
+    from fogproof.checks.tally import Tally as Tally
     from fogproof.checks.verdict import (
         EffectInterval,
         Finding,
@@ -29,6 +34,7 @@ if TYPE_CHECKING:
         Resolution,
         Verdict,
     )
+    from fogproof.checks.verdict import jsonable as jsonable
 
 __all__ = [
     "EffectInterval",
@@ -60,17 +66,23 @@ _HOMES = {
     "RejectedError": "verdict",
     "Resolution": "verdict",
     "SamplerCheck": "sampler",
+    "Subject": "subject",
+    "Tally": "tally",
     "Verdict": "verdict",
+    "batch_generator": "streams",
+    "batch_sizes": "streams",
     "check_streams": "generators",
     "compare_estimators": "compare",
     "fresh_seed": "streams",
+    "jsonable": "verdict",
     "samples_for": "planning",
+    "within": "limits",
 }
-"""The modules of what is not in the module of its name, as `check_mis` is in `mis`."""
+"""The modules of what is not in the module of its name, as `check_mis` is in `mis`; also of what only other rooms ask for."""
 
 
 def __getattr__(name: str) -> Any:
-    if name not in __all__:
+    if name not in __all__ and name not in _HOMES:
         raise AttributeError(f"module 'fogproof.checks' has no attribute {name!r}")
     home = _HOMES.get(name, name.removeprefix("check_"))
     return getattr(importlib.import_module(f"fogproof.checks.{home}"), name)
