@@ -1,6 +1,6 @@
 """The checks: is a sampler's density right, is an estimator's mean? They know neither scenes nor what they judge.
 
-Whatever is named here is public as `fogproof.<name>` too; it loads when it is first used.
+Whatever `__all__` names is public as `fogproof.<name>` too; it loads when it is first used.
 """
 
 from __future__ import annotations
