@@ -103,6 +103,14 @@ SUBJECTS: dict[str, Callable[[], Subject]] = {
         Product(HalfLine(0), UnitSphere()),
         3,
     ),
+    "Student, 0.3 degrees": lambda: _outsider("laws/t/0.3"),
+    "beta, both ends singular": lambda: _outsider("laws/beta/0.1-0.1"),
+    "two values, one rare": lambda: Subject(
+        lambda u: (u[:, 0] < 1e-3) * 1.0, lambda x: np.where(x == 1, 1e-3, 0.999), Discrete(2), 1
+    ),
+    "uniforms of its own": lambda: Subject(
+        lambda rng, n: rng.random((n, 2)), lambda x: np.ones(len(x)), UnitSquare(), None
+    ),
     "die of forty": lambda: Subject(
         lambda u: np.floor(40 * u[:, 0]), lambda x: np.full(len(x), 1 / 40), Discrete(40), 1
     ),

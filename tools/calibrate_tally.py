@@ -49,7 +49,7 @@ class Tally:
 def kind_of(finding: Finding) -> str:
     """Return the kind of check, without the name of an axis or a channel."""
     name = re.sub(r"labels in \d+ cells", "labels in cells", finding.check)
-    return re.sub(r" (of|in) (mu|phi|r|r\^2|x|y|z|cdf of .*|the order of p\(x\)|channel \d+)$", "", name)
+    return re.sub(r" (of|in) (mu|phi|r|r\^2|x|y|z|x: .*|from .*|cdf of .*|the order of p\(x\)|channel \d+)$", "", name)
 
 
 def bands(tally: Tally) -> dict[str, tuple[int, int]]:
