@@ -12,7 +12,7 @@ from fogproof.scene import ImageScene
 from fogproof.scene.kinds import given
 
 TOLERANCE = 1e-8
-MOST, SPARE = 32, {"single": 1 << 16, "multiple": 1 << 14, "ambient": 1 << 22, "none": 1 << 22}
+MOST, SPARE = 32, {"single": 1 << 16, "multiple": 1 << 14, "ambient": 1 << 19, "none": 1 << 19}
 """Evaluations that quadrature may take where an image is not smooth: so many a pixel, and some more by the cost of a ray."""
 
 

@@ -107,8 +107,6 @@ def planted():
     yield "schlick-for-henyey-greenstein", of(medium=replace(medium, phase=Schlick(k))), f"{k:.4g}"
     yield "wrong-sign-of-g", of(medium=replace(medium, phase=HenyeyGreenstein(-0.6))), "-0.6 for 0.6"
     yield "wrong-g", of(medium=replace(medium, phase=HenyeyGreenstein(0.5))), "g = 0."
-    yield "isotropic", of(medium=replace(medium, phase=HenyeyGreenstein(0.0))), "no effect"
-    yield "density", of(medium=Medium(0.04, 0.16, HenyeyGreenstein(0.6))), "as dense"
 
 
 @pytest.mark.parametrize(("cause", "make", "words"), list(planted()), ids=lambda x: x if isinstance(x, str) else "")
@@ -121,15 +119,11 @@ def test_another_scene_is_named_with_its_fit(compared, rng, cause, make, words):
 
 def changed_pixels():
     yield "factor", lambda x: x / (4 * np.pi), "1/(4 pi)"
-    yield "factor", lambda x: np.pi * x, "pi = 3.14159"
-    yield "factor", lambda x: x * 0.8, "albedo = 0.8"
     yield "factor", lambda x: x / 0.08, "1/sigma_s"
     yield "flipped-columns", lambda x: x[:, ::-1], "mirrored"
-    yield "flipped-rows", lambda x: x[::-1], "upside down"
     yield "shifted", lambda x: np.roll(x, 1, 1), "to the right"
     yield "tone-curve", lambda x: np.clip(1.055 * np.maximum(x, 0.0031308) ** (1 / 2.4) - 0.055, 0, 1), "sRGB"
     yield "clamped", lambda x: np.minimum(x, 0.04), "cut off at 0.0"
-    yield "added", lambda x: x + 0.01, "+0.0"
 
 
 @pytest.mark.parametrize(
@@ -309,7 +303,7 @@ def test_the_command_writes_a_verdict_a_page_and_maps(tmp_path, truth, rng):
 
 
 def test_right_images_are_rejected_as_rarely_as_promised(truth, rng):
-    # 400 images of each law at alpha 0.05: more than 42 rejections would have probability below 1e-6.
+    # 60 images of each law at alpha 0.05, which a right test rejects with that probability at most.
     from fogproof.images.pooled import pooled_tests
     from fogproof.images.residuals import Residuals
 
@@ -322,8 +316,14 @@ def test_right_images_are_rejected_as_rarely_as_promised(truth, rng):
     }
     for name, law in laws.items():
         rejected = 0
-        for _ in range(100):
+        for _ in range(60):
             d = small * law()
             found = Residuals(d, 1e-6 * small, small, np.ones(small.shape[:2], bool))
             rejected += any(f.outcome == "rejected" for f in pooled_tests(found, 0.05, ("Y",))[0])
-        assert rejected <= 20, name  # P(more than 20 of 100 at 0.05) = 1e-8
+        assert rejected <= 15, name  # P(more than 15 of 60 at 0.05) = 5e-8
+
+
+def test_differences_within_what_is_allowed_are_no_riddle(compared, truth, rng):
+    # Single precision is off by about 1e-5 in some pixels and by nothing in most: skewed, and no noise.
+    value = truth.value * (1 + 3e-5 * (rng.random(truth.value.shape) < 0.02))
+    assert compared(value).verdict.outcome == "not rejected"

@@ -72,8 +72,8 @@ def refuse_what_cycles_lacks(scene: dict[str, Any]) -> None:
             raise SystemExit("an environment is seen where rays end: background must be its radiance, without a wall")
     elif scene["scattering"] != "none" and positive(background):
         raise SystemExit("a wall or sky that shines also lights the medium: give it background = 0")
-    if scene["scattering"] != "none" and positive(scene["medium"]["emission"]):
-        raise SystemExit("emission that scatters again is another scene: scattering must be 'none'")
+    if scene["scattering"] == "single" and positive(scene["medium"]["emission"]):
+        raise SystemExit("emission scatters to all orders or not at all: scattering must be none or multiple")
 
 
 def camera_of(bpy: Any, Matrix: Any, Vector: Any, settings: Any, camera: dict[str, Any]) -> None:
