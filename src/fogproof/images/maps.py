@@ -89,7 +89,7 @@ def _local(d: np.ndarray) -> np.ndarray:
     square = np.zeros_like(d)
     square[:, 1:] += 0.25 * (d[:, 1:] - d[:, :-1]) ** 2
     square[1:] += 0.25 * (d[1:] - d[:-1]) ** 2
-    return np.sqrt(np.maximum(uniform_filter(square, (SIDE, SIDE, 0), mode="nearest"), 0.0))
+    return np.asarray(np.sqrt(np.maximum(uniform_filter(square, (SIDE, SIDE, 0), mode="nearest"), 0.0)))
 
 
 def z_png(z: np.ndarray, least: int = 320) -> bytes:

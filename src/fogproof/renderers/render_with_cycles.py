@@ -110,7 +110,7 @@ def half_width(camera: dict[str, Any]) -> float:
     width, height = camera["film"]["width"], camera["film"]["height"]
     sides = {"x": width, "y": height, "smaller": min(width, height), "larger": max(width, height)}
     side = sides.get(camera["fov_axis"], math.hypot(width, height))
-    return math.tan(0.5 * camera["fov"]) * width / side
+    return float(math.tan(0.5 * camera["fov"]) * width / side)
 
 
 def fog_of(bpy: Any, scene: dict[str, Any]) -> Any:

@@ -201,11 +201,11 @@ def inside(shape: dict[str, Any], point: list[float]) -> bool:
     if kind == "unbounded":
         return True
     if kind == "ball":
-        return math.dist(shape["center"], point) < shape["radius"]
+        return bool(math.dist(shape["center"], point) < shape["radius"])
     if kind == "box":
         return all(a < x < b for a, x, b in zip(shape["lower"], point, shape["upper"], strict=True))
     depth = sum((p - x) * n for p, x, n in zip(shape["point"], point, shape["normal"], strict=True))
-    return 0 < depth < (shape["thickness"] if kind == "slab" else math.inf)
+    return bool(0 < depth < (shape["thickness"] if kind == "slab" else math.inf))
 
 
 def colour(value: Any) -> Any:

@@ -46,7 +46,7 @@ def noise_of(sight: Sight) -> np.ndarray:
     own = np.sqrt(np.maximum(smooth, 0.0) + allowed**2)[sight.rows, sight.columns]
     own = np.hypot(own, MIDDLES * np.abs(sight.reference - sight.centres))
     least = 1e-9 * float(np.mean(np.abs(sight.image)) + np.mean(np.abs(sight.reference))) or 1e-300
-    return np.maximum(own, least)
+    return np.asarray(np.maximum(own, least))
 
 
 def _third_differences(sight: Sight) -> np.ndarray:

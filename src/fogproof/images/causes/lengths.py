@@ -50,7 +50,7 @@ def hypotheses(sight: Sight) -> Iterator[ImageCause]:
         wrong = _airlight(sight, ray, np.array(position), near, far, power)
 
         def predict(wrong: np.ndarray = wrong) -> np.ndarray:
-            return (direct + airlight * (wrong / right)) * to_means
+            return np.asarray((direct + airlight * (wrong / right)) * to_means)
 
         yield fixed(cause, predict, words)
 

@@ -90,4 +90,4 @@ def _smooth(sight: Sight, ratio: np.ndarray) -> np.ndarray:
     u, v = 2 * sight.columns / columns - 1, 2 * sight.rows / rows - 1
     terms = [u**i * v**j for i in range(DEGREE + 1) for j in range(DEGREE + 1 - i)]
     basis = np.stack(terms, axis=1)
-    return np.maximum(basis @ np.linalg.lstsq(basis, ratio, rcond=None)[0], 0.0)
+    return np.asarray(np.maximum(basis @ np.linalg.lstsq(basis, ratio, rcond=None)[0], 0.0))

@@ -33,6 +33,6 @@ def hypotheses(sight: Sight) -> Iterator[ImageCause]:
         dark = replace(scene, background=0.0)
 
         def clear() -> np.ndarray:
-            return sight.instead(dark) + np.asarray(scene.background)
+            return np.asarray(sight.instead(dark) + np.asarray(scene.background))
 
         yield fixed("background-not-attenuated", clear, "the background is seen without attenuation")
