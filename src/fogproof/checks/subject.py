@@ -18,7 +18,10 @@ UNIT_ROUNDOFF: dict[Precision, float] = {"float64": 2.0**-53, "float32": 2.0**-2
 
 @dataclass(frozen=True)
 class Subject:
-    """A sampler and all it declares; the fields are the arguments of `check_sampler`."""
+    """A sampler and all it declares; the fields are the arguments of `check_sampler`, but for the last.
+
+    pilot  how many samples there are for the first look, None if as many as anybody wants
+    """
 
     sample: Callable[..., Any]
     pdf: Callable[[np.ndarray], Any]
@@ -35,6 +38,7 @@ class Subject:
     events: Mapping[int, float] = field(default_factory=dict)
     uniform_bits: int | None = None
     quasi_random: bool = False
+    pilot: int | None = None
 
     @property
     def bits(self) -> int:

@@ -100,7 +100,7 @@ def _of_file(path: Path, base: Spec, settings: Settings) -> Outcome:
         }
         return Outcome(check_estimator(draws_of(rows, columns), expectation_of(base), **options))
     truth = truth_of(base, precision)
-    hint = misread(truth.domain, rows, columns, 1e-7 if precision == "float32" else 1e-16)
+    hint = misread(truth.domain, rows, columns)
     if hint:
         return Outcome(failed(ProgramError(f"the file {hint[0]}", hint[1]), settings))
     draw = draw_of(rows, columns, truth.domain)
@@ -111,7 +111,7 @@ def _of_file(path: Path, base: Spec, settings: Settings) -> Outcome:
         subject = _subject(base, truth, _never, _never, precision)
         return Outcome(check_ratios(subject, draw, settings.alpha, settings.seed))
     recorded = Recorded(draw)
-    subject = _subject(base, truth, recorded.sample, partial(_value, truth), precision)
+    subject = _subject(base, truth, recorded.sample, partial(_value, truth), precision, recorded.pilot)
     most = min(settings.samples or base.samples or recorded.tested, truth.most or recorded.tested)
     verdict = check_recorded(recorded, subject, most, settings.resolution, settings.alpha, settings.seed)
     return Outcome(verdict, truth.notes)
@@ -206,10 +206,10 @@ def _estimator_options(spec: Spec, precision: Precision) -> dict[str, Any]:
     return {"precision": precision, **{name: getattr(spec, name) for name in names}}
 
 
-def _subject(spec: Spec, truth: KnownLaw, sampler: Any, pdf: Any, precision: Precision) -> Subject:
+def _subject(spec: Spec, truth: KnownLaw, sampler: Any, pdf: Any, precision: Precision, pilot: int = 0) -> Subject:
     """Return the samples of a file as a subject: nobody is there to be asked for others."""
     options = _sampler_options(spec, truth, precision, None)
-    return Subject(sampler, pdf, truth.domain, None, truth.atoms, **options)
+    return Subject(sampler, pdf, truth.domain, None, truth.atoms, pilot=pilot, **options)
 
 
 def _value(truth: KnownLaw, x: np.ndarray) -> np.ndarray:
