@@ -8,7 +8,7 @@ BIN    := $(VENV)/bin
 export OPENBLAS_NUM_THREADS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help verify gallery study test lint format calibrate field-bugs repeat families oracle-docs fuzz-oracle oracle-hard kill-study torture golden bench clean
+.PHONY: help verify gallery study test lint format calibrate field-bugs repeat families oracle-docs fuzz-oracle oracle-hard kill-study torture findings languages golden bench clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -68,6 +68,12 @@ torture: $(VENV)/.installed-test  ## nothing lost, nothing silent: kills, flippe
 	$(BIN)/python tools/kill_study.py
 	$(BIN)/python tools/fuzz_oracle.py
 	$(BIN)/python tools/fuzz_files.py
+
+findings: $(VENV)/.installed-test  ## what the checks found in Mitsuba, measured again without them; rewrites docs/findings.md
+	$(BIN)/python tools/findings.py
+
+languages: $(VENV)/.installed-test  ## the examples in C++, Rust, Go and JavaScript, right and broken, under 100 seeds
+	$(BIN)/python tools/languages.py
 
 golden: $(VENV)/.installed-test  ## prove the golden tables again, by ball arithmetic
 	$(BIN)/python tools/make_golden.py --check

@@ -42,14 +42,17 @@ class Recorded:
         self._at = self.pilot
 
     def sample(self, rng: np.random.Generator, n: int) -> Draw:
-        """Return the next n rows; before `begin` those of the pilot, and once all have been judged, to explain, the first n."""
-        if self._at is None:
-            rows = np.arange(self.pilot) if n == self.pilot else rng.integers(self.pilot, size=n)
+        """Return the next n rows; before `begin` those of the pilot, and to explain a verdict some of those judged."""
+        explaining = self._at == len(self._draw.x)
+        if n == self.pilot and (self._at is None or explaining):
+            rows = np.arange(n)
+        elif self._at is None:
+            rows = rng.integers(self.pilot, size=n)
         elif self._at + n <= len(self._draw.x):
             rows = np.arange(self._at, self._at + n)
             self._at += n
-        elif n <= len(self._draw.x):
-            rows = np.arange(n)
+        elif n <= self.tested:
+            rows = np.arange(self.pilot, self.pilot + n)
         else:
             raise SubjectError(f"there are no {n} samples", "file")  # the same ones twice would look like atoms
         x, *others = (None if part is None else part[rows] for part in self._draw)
