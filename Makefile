@@ -8,10 +8,10 @@ BIN    := $(VENV)/bin
 export OPENBLAS_NUM_THREADS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help verify gallery study test lint format calibrate field-bugs repeat families oracle-docs fuzz-oracle oracle-hard kill-study torture findings languages golden bench clean
+.PHONY: help verify gallery study test lint format calibrate field-bugs repeat families oracle-docs fuzz-oracle oracle-hard kill-study torture findings languages golden bench mutants mutants-sample clean
 
 help:  ## list the targets
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 verify: $(VENV)/.installed  ## every sampler and estimator, and its broken twin, against its reference; the page lands in build/report
 	$(BIN)/fogproof verify --twins --report build/report
@@ -63,11 +63,13 @@ study: $(VENV)/.installed  ## the lecture's estimators, speed against error; res
 kill-study: $(VENV)/.installed  ## kill a study at 20 random moments; nothing may be lost, and no bit may differ
 	$(BIN)/python tools/kill_study.py
 
-torture: $(VENV)/.installed-test  ## nothing lost, nothing silent: kills, flipped bits, broken lines and files; half an hour
+torture: $(VENV)/.installed-test  ## nothing lost, nothing silent: kills, full disks, flipped bits, broken lines, files and commands; an hour
 	$(BIN)/python tools/torture_store.py
 	$(BIN)/python tools/kill_study.py
 	$(BIN)/python tools/fuzz_oracle.py
+	$(BIN)/python tools/fuzz_oracle.py --lines 100000 --mostly-right
 	$(BIN)/python tools/fuzz_files.py
+	$(BIN)/python tools/fuzz_commands.py
 
 findings: $(VENV)/.installed-test  ## what the checks found in Mitsuba, measured again without them; rewrites docs/findings.md
 	$(BIN)/python tools/findings.py
@@ -78,6 +80,13 @@ languages: $(VENV)/.installed-test  ## the examples in C++, Rust, Go and JavaScr
 golden: $(VENV)/.installed-test  ## prove the golden tables again, by ball arithmetic
 	$(BIN)/python tools/make_golden.py --check
 
+mutants: $(VENV)/.installed-test  ## realistic errors planted in our own source, one at a time: do the tests see them? hours, resumable
+	$(BIN)/python tools/mutants --wide
+	$(BIN)/python tools/mutants --table
+
+mutants-sample: $(VENV)/.installed-test  ## thirty of them, drawn by SEED
+	$(BIN)/python tools/mutants --sample 30 --seed $(or $(SEED),1)
+
 clean:  ## remove the environment and everything built
 	rm -rf $(VENV) build
 
@@ -86,7 +95,7 @@ $(VENV)/bin/python:
 	$(BIN)/python -m pip install --quiet --upgrade 'pip>=25.1'
 
 $(VENV)/.installed: $(VENV)/bin/python pyproject.toml
-	$(BIN)/python -m pip install --quiet --editable '.[mie,mitsuba]'
+	$(BIN)/python -m pip install --quiet --editable '.[mie,mitsuba,images]'
 	@touch $@
 
 $(VENV)/.installed-test: $(VENV)/.installed

@@ -9,6 +9,7 @@ from fogproof.analytic.airlight.single_scattering import single_scattering
 from fogproof.analytic.derivatives.gradient import gradient
 from fogproof.analytic.derivatives.path_length import path_length_mean, path_length_transform, path_length_variance
 from fogproof.analytic.derivatives.scattering_counts import scattering_count_law, scattering_count_mean
+from fogproof.analytic.images.image import image
 from fogproof.analytic.media.coefficients import Coefficients, coefficients
 from fogproof.analytic.multiple.ball import (
     ball_albedo,
@@ -96,6 +97,7 @@ __all__ = [
     "half_space_reflectance",
     "half_space_reflectance_orders",
     "half_space_spherical_albedo",
+    "image",
     "mean_displacement",
     "mean_path_length",
     "mean_scatterings",

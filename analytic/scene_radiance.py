@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from fogproof.analytic.airlight.single_scattering import single_scattering
 from fogproof.analytic.declaration import FOG, LAMP, RADIANCE, RAY, quantity
 from fogproof.analytic.rays.ambient_fog import ambient_fog
@@ -26,13 +28,10 @@ def radiance(scene: Scene) -> Reference:
     ambient = scene.ambient if scene.scattering == "ambient" else 0.0
     direct = ambient_fog(scene.medium, scene.ray, ambient, scene.background)
     if scene.scattering != "single":
-        return direct
+        return _in_channels(direct, scene)
     assert scene.light is not None  # a Scene sees to it
     airlight = single_scattering(scene.medium, scene.ray, scene.light, occluders=scene.occluders)
-    if direct.value.ndim < airlight.value.ndim:  # a grey medium and background under a coloured light
-        direct = Reference(direct.value[..., None], direct.error[..., None], direct.method, direct.source)
-    elif airlight.value.ndim < direct.value.ndim:
-        airlight = Reference(airlight.value[..., None], airlight.error[..., None], airlight.method, airlight.source)
+    direct, airlight = _in_channels(direct, scene), _in_channels(airlight, scene)
     value = direct.value + airlight.value
     return Reference(
         value,
@@ -40,3 +39,13 @@ def radiance(scene: Scene) -> Reference:
         f"{direct.method}; {airlight.method}",
         f"{direct.source}; {airlight.source}",
     )
+
+
+def _in_channels(part: Reference, scene: Scene) -> Reference:
+    """Return a part with the scene's channels, also where nothing that is coloured contributes to it."""
+    if scene.channels is None:
+        return part
+    grey = part.value.ndim == len(scene.ray.shape)
+    value, error = ((x[..., None] if grey else x) for x in (part.value, part.error))
+    shape = (*scene.ray.shape, scene.channels)
+    return Reference(np.broadcast_to(value, shape), np.broadcast_to(error, shape), part.method, part.source)

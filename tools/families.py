@@ -1,19 +1,22 @@
 """Families with an error in a corner of their parameters: in how many searches is it found, and shrunk to a simple parameter?
 
-    python tools/families.py [--seeds 10] [--samples 10_000_000] [--right-seeds 10] [NAME …]
+    python tools/families.py [--seeds 10] [--right-seeds 100] [NAME …]
 
 Each broken family is searched with several fresh seeds; the parameter that comes out must be wrong and as simple as stated. Each
-has a right family beside it, the same without the error, which must never be rejected.
+has a right family beside it, the same without the error, which must never be rejected. Searches are written down as they end: who
+starts again goes on.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import math
 import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -191,46 +194,75 @@ FAMILIES = {
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("names", nargs="*", help="parts of the families' names; all by default")
-    parser.add_argument("--seeds", type=int, default=10)
-    parser.add_argument("--right-seeds", type=int, default=10)
-    parser.add_argument("--samples", type=int, default=10_000_000)
-    arguments = parser.parse_args()
-    chosen = {n: f for n, f in FAMILIES.items() if not arguments.names or any(part in n for part in arguments.names)}
-    bad = 0
-    print(f"{'family':38} {'found':>7} {'simple':>7} {'false':>7} {'seconds':>8}  simplest parameters")
-    for name, family in chosen.items():
-        started = time.perf_counter()
-        found, simple, shown = 0, 0, []
-        for _ in range(arguments.seeds):
-            parameter = search(family.broken, family.strategy, arguments.samples)
-            good = parameter is not None and family.wrong(parameter)
-            found += good
-            simple += good and family.simple(parameter)
-            shown.append(repr(parameter))
-        false = sum(
-            search(family.right, family.strategy, arguments.samples) is not None for _ in range(arguments.right_seeds)
+    parser.add_argument("--seeds", type=int, default=10, help="searches of each broken family")
+    parser.add_argument("--right-seeds", type=int, default=100, help="searches of each right family")
+    parser.add_argument("--samples", type=int, default=10_000_000, help="of a search of a broken family")
+    parser.add_argument("--right-samples", type=int, default=1_000_000, help="of a search of a right one")
+    parser.add_argument(
+        "--log", type=Path, default=Path("build/families.jsonl"), help="searches done; those are not done again"
+    )
+    given = parser.parse_args()
+    given.log.parent.mkdir(parents=True, exist_ok=True)
+    done = [json.loads(line) for line in given.log.read_text().splitlines()] if given.log.exists() else []
+    names = [name for name in FAMILIES if not given.names or any(part in name for part in given.names)]
+    wanted = [(name, "broken", i) for i in range(given.seeds) for name in names]
+    wanted += [(name, "right", i) for i in range(given.right_seeds) for name in names]
+    budget = {"broken": given.samples, "right": given.right_samples}
+    done = [row for row in done if row["budget"] == budget[row["side"]]]
+    known = {(row["family"], row["side"], row["number"]) for row in done}
+    with given.log.open("a") as log:
+        for name, side, number in wanted:
+            if (name, side, number) not in known:
+                row = searched(name, side, budget[side]) | {"number": number}
+                done.append(row)
+                print(json.dumps(row), file=log, flush=True)
+    asked = set(wanted)
+    return told(names, [row for row in done if (row["family"], row["side"], row["number"]) in asked])
+
+
+def searched(name: str, side: str, samples: int) -> dict[str, Any]:
+    """Search one family with a fresh seed; return what came of it."""
+    family, seed, started = FAMILIES[name], fresh_seed(), time.perf_counter()
+    parameter, drawn = search(family.broken if side == "broken" else family.right, family.strategy, samples, seed)
+    found = parameter is not None and family.wrong(parameter)
+    return {
+        "family": name, "side": side, "seed": seed, "budget": samples, "drawn": drawn, "parameter": repr(parameter),
+        "rejected": parameter is not None, "found": found, "simple": found and family.simple(parameter),
+        "seconds": round(time.perf_counter() - started, 2),
+    }  # fmt: skip
+
+
+def told(names: list[str], rows: list[dict[str, Any]]) -> int:
+    """Print the table; return 1 if a family is not found in nine of ten searches, or a right one rejected."""
+    bad = False
+    print(f"{'family':38} {'found':>7} {'simple':>7} {'false':>7} {'samples':>9} {'seconds':>8}  simplest parameters")
+    for name in names:
+        broken, right = (
+            [row for row in rows if row["family"] == name and row["side"] == side] for side in ("broken", "right")
         )
-        seconds = time.perf_counter() - started
-        rates = (f"{found}/{arguments.seeds}", f"{simple}/{arguments.seeds}", f"{false}/{arguments.right_seeds}")
-        print(f"{name:38} {rates[0]:>7} {rates[1]:>7} {rates[2]:>7} {seconds:8.0f}  {', '.join(dict.fromkeys(shown))}")
-        sys.stdout.flush()
-        bad += simple < 0.9 * arguments.seeds or false > 0
-    return 1 if bad else 0
+        found, simple = (sum(row[key] for row in broken) for key in ("found", "simple"))
+        false = sum(row["rejected"] for row in right)
+        most = max((row["drawn"] for row in broken), default=0)
+        rates = f"{found:>4}/{len(broken)} {simple:>4}/{len(broken)} {false:>3}/{len(right)}"
+        shown = ", ".join(dict.fromkeys(row["parameter"] for row in broken))
+        print(f"{name:38} {rates} {most:9.1e} {sum(row['seconds'] for row in broken + right):8.0f}  {shown}")
+        bad |= simple < 0.9 * len(broken) or false > 0
+    return int(bad)
 
 
-def search(make: Callable[[Any], Any], strategy: Any, samples: int) -> Any:
-    """Return the simplest rejected parameter of a family, None if none is."""
-    options = {"bounds": (0.0, 1.0)} if hasattr(make(0.5) if strategy is _p else None, "draw") else {}
+def search(make: Callable[[Any], Any], strategy: Any, samples: int, seed: int) -> tuple[Any, int]:
+    """Return the simplest rejected parameter of a family, None if none is, and how many samples were drawn."""
+    options = {"bounds": (0.0, 1.0)} if strategy is _p else {}
     found: list[Any] = []
 
     def remembered(parameter: Any) -> Any:
         found.append(parameter)
         return make(parameter)
 
-    verdict = fogproof.check_family(remembered, strategy, samples=samples, seed=fresh_seed(), **options)
+    verdict = fogproof.check_family(remembered, strategy, samples=samples, seed=seed, **options)
     if verdict.outcome != "rejected":
-        return None
-    return next(p for p in found if repr(p) == verdict.settings["parameter"])
+        return None, verdict.samples
+    return next(p for p in found if repr(p) == verdict.settings["parameter"]), verdict.samples
 
 
 if __name__ == "__main__":

@@ -1,9 +1,10 @@
 """Every public function of the oracle on 10^5 hard cases against other formulas, many digits, another solver and plain walks.
 
-    python tools/oracle_hard.py [CASES] [SEED] [--only WORD] [--table FILE]
+    python tools/oracle_hard.py [CASES] [SEED] [--only WORD] [--parts FILE] [--table FILE]
 
 The cases stand in tools/hard, a module a theme. A case is broken if |value - truth| exceeds the stated error plus what the truth
 itself is in doubt by, if anything is not a number, or if the oracle raises an error. Exits with 1 if one is.
+--parts keeps every batch that is done in a file of JSON lines, and goes on where an interrupted run with the same seed was.
 --table writes the accuracy of every function to a file (docs/oracle-accuracy.md).
 """
 
@@ -11,14 +12,16 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import json
 import math
 import os
 import pkgutil
+import random
 import sys
 import time
 from collections import defaultdict
 from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 
 import mpmath as mp
@@ -35,12 +38,6 @@ BATCH = 20
 NOT_A_QUANTITY = {"Coefficients", "Golden", "coefficients", "golden_values"}
 """Public names that give no value of their own."""
 
-ELSEWHERE = {
-    "sky_colour": "tests/oracle/test_colour.py",
-    "sun_colour": "tests/oracle/test_colour.py",
-}
-"""Functions that are sums or products of others, and where they are compared with the truth."""
-
 
 def kinds() -> dict[str, Kind]:
     """Return all kinds of cases: a function, and what it is held to where there is more than one."""
@@ -52,7 +49,7 @@ def kinds() -> dict[str, Kind]:
 
 def missing() -> set[str]:
     """Return the public functions of the oracle that have no case."""
-    return set(analytic.__all__) - {name.split("/")[0] for name in kinds()} - NOT_A_QUANTITY - set(ELSEWHERE)
+    return set(analytic.__all__) - {name.split("/")[0] for name in kinds()} - NOT_A_QUANTITY
 
 
 def judged(kind: Kind, rng: np.random.Generator) -> Case | str:
@@ -79,12 +76,37 @@ def share(case: Case) -> float:
     return float(off / mp.mpf(case.error)) if case.error else math.inf
 
 
-def batch(job: tuple[str, int, int]) -> tuple[str, list[Case | str]]:
+def batch(job: tuple[str, int, int]) -> tuple[str, int, list[Case | str]]:
     """Return what became of a batch of cases of a kind."""
     name, seed, index = job
     rng = np.random.default_rng([seed, index])
     kind = kinds()[name]
-    return name, [judged(kind, rng) for _ in range(BATCH)]
+    return name, index, [judged(kind, rng) for _ in range(BATCH)]
+
+
+def kept(path: Path | None, seed: int) -> dict[tuple[str, int], list[Case | str]]:
+    """Return the batches in a file of parts, by the name of their kind and their index."""
+    done: dict[tuple[str, int], list[Case | str]] = {}
+    if path is None or not path.exists():
+        return done
+    for line in path.read_text(encoding="utf-8").splitlines():
+        try:
+            part = json.loads(line)
+        except json.JSONDecodeError:
+            continue  # the last line of a run that was killed
+        if part["seed"] == seed:
+            read = [
+                x if isinstance(x, str) else Case(x[0], x[1], mp.mpf(x[2]), mp.mpf(x[3]), x[4], x[5])
+                for x in part["cases"]
+            ]
+            done[part["name"], part["index"]] = read
+    return done
+
+
+def line_of(name: str, seed: int, index: int, cases: list[Case | str]) -> str:
+    """Return a batch as a line of the file of parts; 60 digits of the truth."""
+    plain = [x if isinstance(x, str) else [*x[:2], mp.nstr(x.truth, 60), mp.nstr(x.doubt, 60), *x[4:]] for x in cases]
+    return json.dumps({"name": name, "seed": seed, "index": index, "cases": plain}) + "\n"
 
 
 def jobs(count: int, seed: int, only: str) -> Iterator[tuple[str, int, int]]:
@@ -120,14 +142,24 @@ def main() -> None:
     parser.add_argument("cases", nargs="?", type=int, default=100_000)
     parser.add_argument("seed", nargs="?", type=int, default=int.from_bytes(os.urandom(4)))
     parser.add_argument("--only", default="", metavar="WORD", help="kinds whose name contains the word")
+    parser.add_argument("--parts", type=Path, metavar="FILE", help="keep what is done, and go on from it")
     parser.add_argument("--table", type=Path, metavar="FILE", help="write the accuracy of every function")
     asked = parser.parse_args()
     start, found = time.perf_counter(), defaultdict(list)
-    with ProcessPoolExecutor() as pool:
-        for name, results in pool.map(batch, jobs(asked.cases, asked.seed, asked.only)):
+    done = kept(asked.parts, asked.seed)
+    every = list(jobs(asked.cases, asked.seed, asked.only))
+    left = [(name, seed, index) for name, seed, index in every if (name, index) not in done]
+    for name, _, index in every:
+        found[name] += done.get((name, index), [])
+    random.Random(asked.seed).shuffle(left)  # wherever a run is interrupted, all kinds are in it
+    with ProcessPoolExecutor() as pool, open(asked.parts or os.devnull, "a", encoding="utf-8") as parts:
+        for future in as_completed([pool.submit(batch, job) for job in left]):
+            name, index, results = future.result()
             found[name] += results
+            parts.write(line_of(name, asked.seed, index, results))
+            parts.flush()
     rows, broken, total = [], [], 0
-    for name, results in found.items():
+    for name, results in sorted(found.items()):
         cases = [case for case in results if isinstance(case, Case)]
         total += len(results)
         broken += [f"{name}: {text}" for text in results if isinstance(text, str)]

@@ -125,7 +125,7 @@ def least_error(
             else:
                 better = error < best[1]
                 best = np.where(better, value, best[0]), np.where(better, error, best[1])
-            if not np.any(error < previous):
+            if not np.any(error < 0.5 * previous):
                 break  # smaller ones only carry more rounding
             previous = error
     return best

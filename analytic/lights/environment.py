@@ -34,6 +34,8 @@ from fogproof.scene.occluders import Occluder
 from fogproof.scene.phase import Isotropic, PhaseFunction
 from fogproof.scene.shapes import Shape
 
+same_all_around = True
+
 METHOD = "double exponential rules over directions and along the ray"
 SOURCE = "Beer's law along both ways, integrated; Takahasi & Mori 1974"
 

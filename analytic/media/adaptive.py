@@ -8,17 +8,21 @@ neighbours compose as layers of paint do,
 
 so a panel can be compared with its own halves. The difference is the error estimate, far above the error of the
 halves, which replace their parent where it is too large. All rays are refined together, one call of the medium a round.
+
+A user's function may jump where nobody says so. Halves can agree on a wrong value then, so its panels are looked at on their edges
+too, and held to what one jump in a panel can cost (`jump_bound`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from fogproof.analytic.arithmetic.budget import afford, budget, may_refine, of_bounded_variation
 from fogproof.analytic.arithmetic.error_free import EPS, TINY, two_sum
+from fogproof.analytic.arithmetic.jump_bound import INSIDE, of_a_jump
 from fogproof.analytic.arithmetic.panel_rule import NODES, RUNNING, WEIGHTS
 from fogproof.analytic.geometry.rays import Thickness
 from fogproof.analytic.media.breakpoints import breakpoints
@@ -42,14 +46,29 @@ THICK, UNSEEN = 8.0, 1e-30
 BLOCK = 4096
 """Panels evaluated at a time."""
 
+CUTS = np.concatenate([[0.0], NODES, [1.0]])
+"""Where a panel may be cut beside a jump, as shares of its width."""
+
+BESIDE, CROSSED = np.array([0.02, 0.1, 0.5, 0.9, 0.98]), np.array([0.2, 0.8, 1.0, 0.8, 0.2])
+"""Places in a panel, as shares, and what of its width a jump may be moved over that crosses them, twice over."""
+
 SOURCE = "Gauss-Legendre quadrature, panel against its halves; composition as in Porter & Duff 1984"
 
 SourceTerm = Callable[[Coefficients], np.ndarray]
 """Radiance gained per metre [W/(m^3 sr)] at points with these coefficients."""
 
 
-Look = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
-"""(rays (p,), distances (p, nodes)) -> sigma_t and source there, (p, nodes) or (p, nodes, channels)."""
+class Look(Protocol):
+    """What gives sigma_t and the source on rays (p,) at distances (p, nodes), (p, nodes) or (p, nodes, channels).
+
+    moved  (p, nodes, 3) added to the places [m]
+    """
+
+    def __call__(
+        self, which: np.ndarray, t: np.ndarray, moved: np.ndarray | float = 0.0
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return both."""
+        ...
 
 
 class Along(NamedTuple):
@@ -64,8 +83,10 @@ class Along(NamedTuple):
 class DepthPanels(NamedTuple):
     """Panels of all rays, (p,) or (p, channels) each; the errors are estimates for this panel.
 
-    jumps  sum of |differences| between neighbouring nodes, of sigma_t and of the source, (p, 2) or (p, channels, 2)
-    ends   their values at the first and the last node, (p, 2, 2) or (p, channels, 2, 2)
+    jumps   sum of |differences| between neighbouring nodes, of sigma_t and of the source, (p, 2) or (p, channels, 2)
+    ends    their values at the first and the last node, (p, 2, 2) or (p, channels, 2, 2)
+    hidden  least error of tau and of gain by what one jump in the panel would cost, (p, 2) or (p, channels, 2)
+    cuts    where the panel is cut next, as shares of its width, (p, 2): the middle twice, or both sides of a jump
     """
 
     ray: np.ndarray
@@ -77,13 +98,15 @@ class DepthPanels(NamedTuple):
     gain_error: np.ndarray
     jumps: np.ndarray
     ends: np.ndarray
+    hidden: np.ndarray
+    cuts: np.ndarray
 
 
 def thickness_by_quadrature(medium: AnyMedium, ray: Ray, channels: int | None) -> Thickness:
     """Return tau of a medium of which only the local coefficients are known, shape R or R + (channels,).
 
-    Error: estimated from panels against their halves, plus rounding. A detail smaller than what the medium declares that
-    no node meets cannot be seen.
+    Error: estimated from panels against their halves, plus rounding. A user's function may jump or kink once in any length of
+    its `detail` (in an eighth of what the ray crosses, where it declares none); what is smaller cannot be seen.
     """
     along = integrate_along(medium, ray, lambda local: np.zeros_like(local.sigma_t), channels)
     shape = ray.shape if channels is None else (*ray.shape, channels)
@@ -106,21 +129,25 @@ def integrate_along(
     extinction  what is integrated to the optical thickness [1/m]
     """
     origin, direction = ray.origin.reshape(-1, 3), ray.direction.reshape(-1, 3)
+    reach = np.max(np.abs(origin), axis=-1, initial=0.0)
+    foreign = hasattr(medium, "detail")
 
-    def look(which: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def look(which: np.ndarray, t: np.ndarray, moved: np.ndarray | float = 0.0) -> tuple[np.ndarray, np.ndarray]:
         w = direction[which, None, :]
-        local = coefficients(medium, origin[which, None, :] + t[..., None] * w, w, channels)
+        local = coefficients(medium, origin[which, None, :] + t[..., None] * w + moved, w, channels)
         return extinction(local), np.broadcast_to(source(local), local.sigma_t.shape)
 
     def evaluate(which: np.ndarray, start: np.ndarray, width: np.ndarray) -> DepthPanels:
         blocks = [slice(i, i + BLOCK) for i in range(0, max(len(which), 1), BLOCK)]
-        found = [_panels(look, which[b], start[b], width[b]) for b in blocks]
+        found = [_panels(look, which[b], start[b], width[b], reach if foreign else None) for b in blocks]
         return DepthPanels(*(np.concatenate(columns) for columns in zip(*found, strict=True)))
 
     count = len(origin)
     with budget(count):
         panels = _refined(evaluate, evaluate(*_first(medium, ray)), count, tolerance)
-    return _compose(panels, count, np.max(np.abs(origin), axis=-1, initial=0.0))
+        if foreign:
+            panels = _beside(look, panels, origin, direction)
+    return _compose(panels, count, reach)
 
 
 Evaluate = Callable[[np.ndarray, np.ndarray, np.ndarray], DepthPanels]
@@ -136,18 +163,33 @@ def _refined(evaluate: Evaluate, panels: DepthPanels, count: int, tolerance: flo
         if turn and not may_refine():
             panels = _left_undone(panels)
             break
-        half = panels.width / 2
-        left = evaluate(panels.ray, panels.start, half)
-        right = evaluate(panels.ray, panels.start + half, panels.width - half)
-        with np.errstate(under="ignore"):
-            tau_off = np.abs(left.tau + right.tau - panels.tau) / 2
-            gain_off = np.abs(left.gain + np.exp(-left.tau) * right.gain - panels.gain) / 2
-        halves = [side._replace(tau_error=tau_off, gain_error=gain_off) for side in (left, right)]
-        everything = _join(done, *halves)
+        everything = _join(done, *_halved(evaluate, panels))
         bad = _too_wrong(everything, count, tolerance)
         panels = DepthPanels(*(column[bad] for column in everything))
         done = DepthPanels(*(column[~bad] for column in everything))
     return _join(done, panels)
+
+
+def _halved(evaluate: Evaluate, panels: DepthPanels) -> list[DepthPanels]:
+    """Return both halves of the panels and, where a jump stands out, what is before it, what holds it and what is after it."""
+    ray, start, width = panels.ray, panels.start, panels.width
+    low, high = start + panels.cuts[:, 0] * width, start + panels.cuts[:, 1] * width
+    lone = np.flatnonzero(high > low)
+    left, right = evaluate(ray, start, low - start), evaluate(ray, high, start + width - high)
+    middle = evaluate(ray[lone], low[lone], (high - low)[lone])
+    tau, gain = right.tau.copy(), right.gain.copy()
+    with np.errstate(under="ignore"):
+        gain[lone] = middle.gain + np.exp(-middle.tau) * gain[lone]
+        tau[lone] += middle.tau
+        tau_off = np.abs(left.tau + tau - panels.tau) / 2
+        gain_off = np.abs(left.gain + np.exp(-left.tau) * gain - panels.gain) / 2
+    tau_off[lone] = gain_off[lone] = 0.0  # what the jump is to blame for is known to the part that holds it
+    parts = []
+    for part, which in ((left, slice(None)), (middle, lone), (right, slice(None))):
+        tau_error = np.maximum(tau_off[which], part.hidden[..., 0])
+        gain_error = np.maximum(gain_off[which], part.hidden[..., 1])
+        parts.append(part._replace(tau_error=tau_error, gain_error=gain_error))
+    return parts
 
 
 def _first(medium: AnyMedium, ray: Ray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -167,16 +209,39 @@ def _first(medium: AnyMedium, ray: Ray) -> tuple[np.ndarray, np.ndarray, np.ndar
     return which[owner], start[owner] + step * share, share
 
 
-def _panels(look: Look, which: np.ndarray, start: np.ndarray, width: np.ndarray) -> DepthPanels:
-    sigma, q = (np.moveaxis(a, 1, -1) for a in look(which, start[:, None] + width[:, None] * NODES))  # nodes last
-    width_ = width.reshape(-1, *[1] * (sigma.ndim - 1))
+def _panels(
+    look: Look, which: np.ndarray, start: np.ndarray, width: np.ndarray, reach: np.ndarray | None
+) -> DepthPanels:
+    """Return the panels; where the rays' reach from the origin of space is given [m], held to what one jump would cost."""
+    t = start[:, None] + width[:, None] * NODES
+    if reach is not None:  # the edges too, from inside by more than a place is rounded by
+        inside = np.minimum(np.maximum(INSIDE * width, 8 * EPS * (reach[which] + start + width)), width * NODES[0] / 2)
+        t = np.concatenate([(start + inside)[:, None], t, (start + width - inside)[:, None]], axis=1)
+    every = np.stack([np.moveaxis(a, 1, -1) for a in look(which, t)], axis=-2)  # sigma_t and source, then nodes
+    sigma, q = np.moveaxis(every if reach is None else every[..., 1:-1], -2, 0)
+    scale = width.reshape(-1, *[1] * (sigma.ndim - 1))
     with np.errstate(under="ignore", over="ignore"):
-        tau = (width_ * (sigma * WEIGHTS)).sum(axis=-1)
-        gain = (width_ * (np.exp(-width_ * (sigma @ RUNNING.T)) * q * WEIGHTS)).sum(axis=-1)
-    both = np.stack([sigma, q], axis=-2)
-    jumps = np.abs(np.diff(both, axis=-1)).sum(axis=-1)
-    none = np.zeros_like(tau)
-    return DepthPanels(which, start, width, tau, gain, none, none, jumps, both[..., [0, -1]])
+        tau = (scale * (sigma * WEIGHTS)).sum(axis=-1)
+        dimmed = np.exp(-scale * (sigma @ RUNNING.T)) * q
+        gain = (scale * (dimmed * WEIGHTS)).sum(axis=-1)
+    ends, none = every[..., [0, -1]], np.zeros_like(tau)
+    steps = np.abs(np.diff(every, axis=-1))
+    jumps, hidden, cuts = steps.sum(axis=-1), np.zeros(ends.shape[:-1]), np.full((len(which), 2), 0.5)
+    if reach is not None:
+        edges = ends.copy()
+        with np.errstate(under="ignore", over="ignore"):
+            edges[..., 1, 1] *= np.exp(-tau)
+            hidden = scale * of_a_jump(np.stack([sigma, dimmed], axis=-2), edges)
+        # The cuts of the one that changes at the same place everywhere, as a jump does.
+        kinds = int(np.prod(jumps.shape[1:]))
+        steps, total = steps.reshape(len(which), kinds, len(CUTS) - 1), jumps.reshape(len(which), kinds)
+        lone = ((steps > total[..., None] / 2) | (total[..., None] == 0)).all(axis=1) & (total > 0).any(axis=-1)[
+            :, None
+        ]
+        at = np.argmax(lone, axis=1)
+        alone = lone.any(axis=1)[:, None] & (width[:, None] > 256 * EPS * (reach[which] + start + width)[:, None])
+        cuts = np.where(alone, np.stack([CUTS[at], CUTS[at + 1]], axis=1), cuts)
+    return DepthPanels(which, start, width, tau, gain, none, none, jumps, ends, hidden, cuts)
 
 
 def _join(*parts: DepthPanels) -> DepthPanels:
@@ -215,6 +280,24 @@ def _left_undone(panels: DepthPanels) -> DepthPanels:
     dimmed = np.minimum(panels.tau + tau_error, 1.0)
     rough = of_bounded_variation(width, panels.jumps[..., 1] + brightest * dimmed) + width * brightest * tau_error
     return panels._replace(tau_error=tau_error, gain_error=np.maximum(panels.gain_error, rough))
+
+
+def _beside(look: Look, panels: DepthPanels, origin: np.ndarray, direction: np.ndarray) -> DepthPanels:
+    """Return the panels with the errors of places that are rounded across the ray, where a function may jump as well.
+
+    A ray that meets a jump at an angle alpha meets it 1 / sin(alpha) times as far away as the place was moved by.
+    """
+    t = panels.start[:, None] + panels.width[:, None] * BESIDE
+    at = np.abs(origin[panels.ray])[:, None] + np.abs(t[..., None] * direction[panels.ray][:, None])
+    here = look(panels.ray, t)
+    off = [np.zeros_like(panels.tau), np.zeros_like(panels.gain)]
+    for axis in np.eye(3):
+        for sign in (-2 * EPS, 2 * EPS):
+            there = look(panels.ray, t, sign * at * axis)
+            for total, new, old in zip(off, there, here, strict=True):
+                total += np.tensordot(CROSSED, np.abs(new - old), axes=(0, 1))
+    width = panels.width.reshape(-1, *[1] * (panels.tau.ndim - 1))
+    return panels._replace(tau_error=panels.tau_error + width * off[0], gain_error=panels.gain_error + width * off[1])
 
 
 def _starts(rays: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:

@@ -6,7 +6,7 @@ the coefficients N, 2 N, … further up, times powers of the radius.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
 import numpy as np
 
@@ -25,20 +25,15 @@ def taylor_coefficients(
     *,
     known: Callable[[float], Reference],
     source: str,
-    shares: Sequence[float] = (1.0,),
-    growth: float = 1.0,
     first: np.ndarray | None = None,
     most: np.ndarray | None = None,
 ) -> Reference:
     """Return the coefficients 0 … count of a power series, (..., count + 1).
 
-    solution  complex albedos (N,) of magnitude below 1/growth -> (..., N), real on the real axis
+    solution  complex albedos (N,) of magnitude below 1 -> (..., N), real on the real axis
     known     the same at a real albedo, with its error: what the solution is off by there, it is taken to be everywhere
-    shares    of the radius at which to look too: the first coefficients may be much smaller than the others, and on a
-              small circle so is the error; each coefficient is taken from where its error is least
     first     (...) the coefficient 0, if it is known: what the solution gets wrong of it counts as its error for all of them
     most      (...) what the others are at most, if that is known; they are never negative
-    growth    the n-th coefficient is in [0, growth^(n - 1)]: the chance at most that what has scattered collides again
 
     Error: radius^N from the coefficients not resolved, and ten times that of the solution, over radius^n.
     """
@@ -46,11 +41,8 @@ def taylor_coefficients(
         others = np.repeat(most[..., None], count, axis=-1) / 2
         return _with_first(first, others, others, METHOD, source)
     points = 64 + 2 * count
-    largest = EXPECTED ** (1 / (points + count)) / growth
-    found = [_on_a_circle(solution, count, points, largest * share, growth, known, first) for share in shares]
-    value, error = found[0]
-    for other, its_error in found[1:]:
-        value, error = np.where(its_error < error, other, value), np.minimum(its_error, error)
+    largest = EXPECTED ** (1 / (points + count))
+    value, error = _on_a_circle(solution, count, points, largest, known, first)
     if most is not None:
         low, high = np.maximum(value - error, 0.0), np.minimum(value + error, most[..., None])
         error = np.where(high < low, error, (high - low) / 2)
@@ -75,7 +67,6 @@ def _on_a_circle(
     count: int,
     points: int,
     radius: float,
-    growth: float,
     known: Callable[[float], Reference],
     first: np.ndarray | None,
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -91,6 +82,6 @@ def _on_a_circle(
         if first is not None:
             error = np.maximum(error, np.abs(series[..., 0] - first)[..., None])
         shrink = radius ** -np.arange(count + 1.0)
-        unseen = (radius * growth) ** points
-        aliased = unseen / (1 - unseen) * growth ** np.maximum(np.arange(count + 1.0) - 1, 0)
+        unseen = radius**points
+        aliased = unseen / (1 - unseen)
         return series * shrink, (10 * error + 8 * EPS * size) * shrink + aliased

@@ -17,15 +17,14 @@ import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.analytic.declaration import MEAN_FREE_PATHS, quantity
-from fogproof.analytic.multiple.orders import taylor_coefficients
+from fogproof.analytic.multiple.rod_orders import rod_orders
 from fogproof.analytic.multiple.scattering_arguments import checked_albedo, checked_count, checked_length
 from fogproof.contracts import Reference
 from fogproof.scene.arrays import Count, FloatArray
 from fogproof.validate import as_float_array, require
 
 METHOD = "closed form"
-CIRCLES = (1.0, 0.5, 0.2, 0.05, 0.01, 1e-3)
-"""Radii from which scattering orders are taken, as shares of the largest."""
+DOUBLING = "doubling of power series in the albedo"
 
 SOURCE = "Schuster 1905, Radiation through a foggy atmosphere"
 
@@ -76,16 +75,12 @@ def rod_reflectance_orders(length: FloatArray, count: Count, g: FloatArray = 0.0
     length  (...) in mean free paths, >= 0
     count   the highest order, a whole number >= 0
     g       (...) mean cosine in [-1, 1]; it broadcasts against the length
+
+    Relative error: 4 eps for each order and doubling of 2^-12 mean free paths, 1e-12 or less; see `rod_orders`.
     """
     _, L, g = _checked(0.0, length, g)
-    return taylor_coefficients(
-        lambda c: _reflectance(c, 1 - c, L[..., None], g[..., None]),
-        checked_count("count", count),
-        known=lambda c: _known(_reflectance, c, L, g),
-        source=SOURCE,
-        shares=CIRCLES,
-        growth=_collides_again(L),
-    )
+    R, _, off, lost = rod_orders(L, g, checked_count("count", count))
+    return Reference(R, off * R + lost, DOUBLING, SOURCE)
 
 
 @quantity(
@@ -102,14 +97,8 @@ def rod_transmittance_orders(length: FloatArray, count: Count, g: FloatArray = 0
     g       (...) mean cosine in [-1, 1]; it broadcasts against the length
     """
     _, L, g = _checked(0.0, length, g)
-    return taylor_coefficients(
-        lambda c: _transmittance(c, 1 - c, L[..., None], g[..., None]),
-        checked_count("count", count),
-        known=lambda c: _known(_transmittance, c, L, g),
-        source=SOURCE,
-        shares=CIRCLES,
-        growth=_collides_again(L),
-    )
+    _, T, off, lost = rod_orders(L, g, checked_count("count", count))
+    return Reference(T, off * T + lost, DOUBLING, SOURCE)
 
 
 def _checked(albedo: Any, length: Any, g: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -117,18 +106,6 @@ def _checked(albedo: Any, length: Any, g: Any) -> tuple[np.ndarray, np.ndarray, 
     require("g", g, np.abs(g) <= 1, "must lie in [-1, 1]", "it is the mean cosine")
     arrays = np.broadcast_arrays(c, L, g)
     return arrays[0], arrays[1], arrays[2]
-
-
-def _collides_again(L: np.ndarray) -> float:
-    """Return the chance at most that light in a rod collides once more: that of crossing all of it."""
-    return float(-np.expm1(-np.max(L, initial=1e-3)))
-
-
-def _known(function: Any, c: float, L: np.ndarray, g: np.ndarray) -> Reference:
-    """Return a formula at an albedo that may exceed 1, below the one at which a rod would glow by itself, and its error."""
-    value = np.real(function(np.asarray(c, complex), 1 - c, L, g))
-    depth = np.sqrt(np.abs((1 - c) * (1 - c * g))) * L
-    return Reference(value, (32 + 8 * depth) * EPS * np.abs(value), METHOD, SOURCE)
 
 
 def _kept(c: Any, absorbed: Any, g: np.ndarray) -> Any:

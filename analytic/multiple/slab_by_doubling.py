@@ -21,6 +21,15 @@ from fogproof.scene.phase import PhaseFunction
 LEVELS = (14, 20, 28, 40)
 """Half the number of nodes of a solution: the next ones are used where the last two differ."""
 
+PEAKED = (56, 80, 112, 160)
+"""The next ones, for moments that fall exponentially, and to less than `REACHED` at the last of them."""
+
+REACHED, SURE = 0.1, 1e-3
+"""Moment that the forward share may have at the last level, and from which on two solutions tell the error."""
+
+ENOUGH_OF_PEAKED = 1e-11
+"""Relative difference with which the finer one of those is taken."""
+
 MOMENTS = 3
 """Moments for each of these: P_l is integrated as well as the radiance is."""
 
@@ -60,11 +69,12 @@ class LayerMoments(NamedTuple):
 
 
 @lru_cache(maxsize=32)
-def phase_moments(phase: PhaseFunction) -> LayerMoments:
-    """Return as many moments as the finest solution needs."""
-    moments = phase_legendre_moments(phase, MOMENTS * LEVELS[-1])
+def phase_moments(phase: PhaseFunction, finest: int | None = None) -> LayerMoments:
+    """Return as many moments as the finest solution needs, of `LEVELS` unless it is given."""
+    moments = phase_legendre_moments(phase, MOMENTS * (finest or LEVELS[-1]))
     weight = 2 * np.arange(len(moments.value)) + 1
-    return LayerMoments(moments.value, np.sqrt(np.cumsum(weight * moments.error**2)))
+    with np.errstate(under="ignore"):
+        return LayerMoments(moments.value, np.sqrt(np.cumsum(weight * moments.error**2)))
 
 
 def is_isotropic(phase: PhaseFunction) -> bool:
@@ -88,11 +98,30 @@ def _slow(chi: np.ndarray) -> bool:
     return last > CUT and last > SLOW * half
 
 
+def _levels(phase: PhaseFunction) -> tuple[LayerMoments, tuple[int, ...]]:
+    """Return the moments of the phase function and the levels worth a solution, the coarsest first."""
+    moments = phase_moments(phase)
+    if abs(float(moments.chi[-1])) > CUT and _exponential(moments.chi):
+        more = phase_moments(phase, PEAKED[-1])
+        if abs(float(more.chi[-1])) < REACHED and _exponential(more.chi):
+            return more, (*LEVELS[2:], *PEAKED)
+    return moments, LEVELS[_first(moments.chi) :]
+
+
+def _exponential(chi: np.ndarray) -> bool:
+    """Return whether the moments fall at least as an exponential does: as much again over as many more of them."""
+    sixth = len(chi) // 6
+    quarter, half, last = (
+        float(np.max(np.abs(chi[end - sixth : end]))) for end in (len(chi) // 4, len(chi) // 2, len(chi))
+    )
+    return 0 < last * quarter**1.5 < half**2.5 * (1 + 1e-9)
+
+
 def doubled_values(
     c: np.ndarray, tau: np.ndarray, mu0: np.ndarray | None, phase: PhaseFunction, quantity: Quantity
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the quantity and its error for albedos, thicknesses and cosines (v,); for diffuse light if mu0 is None."""
-    moments = phase_moments(phase)
+    moments, levels = _levels(phase)
     whole, tau = tau, np.minimum(tau, DEEPEST)
     beam, mu0 = mu0, None if mu0 is None else seen_at(mu0, tau)
     pairs, which = np.unique(np.stack([c, tau], axis=1), axis=0, return_inverse=True)
@@ -100,9 +129,10 @@ def doubled_values(
     value, error = np.zeros(c.shape), np.zeros(c.shape)
     todo = np.arange(len(c))
     before: list[tuple[int, np.ndarray]] = []
-    slow = _slow(moments.chi)
+    falls = len(moments.chi) > MOMENTS * LEVELS[-1] + 1
+    slow = not falls and _slow(moments.chi)
     with np.errstate(under="ignore"):
-        for n in LEVELS[_first(moments.chi) :]:
+        for n in levels:
             if not len(todo):
                 break
             found, collisions = _solution(pairs, which, mu0, moments.chi, quantity, todo, n)
@@ -116,12 +146,13 @@ def doubled_values(
                 before.append((n, found))
                 continue
             difference = np.abs(found - before[-1][1])
-            if slow:
+            if slow or (falls and abs(moments.chi[MOMENTS * n]) > SURE):
                 difference = np.max([SAFETY * (m / n) ** POWER * np.abs(found - f) for m, f in before], axis=0)
             value[todo], error[todo] = found, difference + rounding + 2 * TINY
             if beam is not None:  # both so small that their quotient is lost where tau is raised to THINNEST
                 error[todo] += (tau[todo] < THINNEST) & (beam[todo] < 1e16 * tau[todo])
-            more = difference > np.maximum(ENOUGH * np.abs(found), rounding)
+            enough = ENOUGH_OF_PEAKED if n >= PEAKED[0] else ENOUGH
+            more = difference > np.maximum(enough * np.abs(found), rounding)
             todo, before = todo[more], [(m, f[more]) for m, f in [*before, (n, found)]]
         if quantity == "transmitted" and beam is not None:
             straight, its_error = exp_minus(*divide(pair(whole), pair(beam)))

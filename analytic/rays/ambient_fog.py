@@ -63,7 +63,7 @@ def ambient_fog(
         scattered, absorbed = shares(medium)
         survived, _, inherited = survival(tau)
         extinguished = -np.expm1(-tau.value)
-        source = scattered * ambient + absorbed * medium.emission
+        source = np.multiply(scattered, ambient) + np.multiply(absorbed, medium.emission)
         value = survived * background + extinguished * source
         error = 12 * EPS * value + inherited * np.maximum(background, source)
         error = error + 6 * TINY * (1 + np.maximum(np.maximum(background, ambient), medium.emission))

@@ -183,7 +183,8 @@ def ambient_fog_variance(
         survived, rounding, inherited = survival(tau)
         lost = -np.expm1(-tau.value)
         scattered, absorbed = shares(medium)
-        source = np.where(tau.value > 0, scattered * ambient + absorbed * medium.emission, 0.0)
+        source = np.multiply(scattered, ambient) + np.multiply(absorbed, medium.emission)
+        source = np.where(tau.value > 0, source, 0.0)
         contrast = source - background
         off = 4 * EPS * source + EPS * np.abs(contrast)
         chance = survived * lost

@@ -21,6 +21,13 @@ def density(phase: HenyeyGreenstein, versine: np.ndarray, coversine: np.ndarray)
     return (1 - k) * (1 + k) / (4 * np.pi * d2 * np.sqrt(d2))
 
 
+def asymmetry_score(phase: HenyeyGreenstein, mu: np.ndarray) -> np.ndarray:
+    """Return d ln f/d g at forward cosines mu."""
+    g = phase.g
+    score: np.ndarray = 3 * (mu - g) / (1 + g * g - 2 * g * mu) - 2 * g / (1 - g * g)
+    return score
+
+
 def cosines(phase: HenyeyGreenstein, xi: np.ndarray, out: np.ndarray) -> None:
     """Write forward cosines, absolute error below 10 eps.
 

@@ -246,7 +246,8 @@ def _decades(low: float, high: float, most: int) -> list[tuple[float, str]]:
     within = [value for value in values if low * (1 - 1e-9) <= value <= high * (1 + 1e-9)]
     if len(within) < 2:
         return _steps(low, high, most)
-    return [(value, f"{value:g}" if 1e-3 <= value < 1e5 else _mantissa(value)) for value in within]
+    plain = all(1e-3 <= value < 1e5 for value in within)  # one notation an axis
+    return [(value, f"{value:g}" if plain else _mantissa(value)) for value in within]
 
 
 def _mantissa(value: float) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -22,6 +23,12 @@ class BeforeAfter:
     names: tuple[str, ...]
     before: tuple[float, ...]
     after: tuple[float, ...]
+
+    HOW: ClassVar[str] = (
+        "Each mark is a case: across, what it was in the older run; up, what it is now. On the dashed line nothing "
+        "changed; above it the number grew. Marks outside the grey band changed by more than a factor of two and are "
+        "named."
+    )
 
     def draw(self, sheet: Sheet) -> str:
         """Draw after over before, both logarithmic, with the factor of two around no change; name what lies far out."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -21,6 +22,12 @@ class Bins:
     label: str
     expected: tuple[float, ...]
     observed: tuple[float, ...]
+
+    HOW: ClassVar[str] = (
+        "Above: how often samples fell into each bin, against what the pdf says. Where the two part, the sampler "
+        "draws too many or too few. Below: the same as a relative misfit, with the range that chance explains; a bar "
+        "beyond it is a place to look at."
+    )
 
     def __post_init__(self) -> None:
         n = len(self.edges) - 1

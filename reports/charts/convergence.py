@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
-from fogproof.reports.charts.axes import DASHED, Axes, Key, Marker, legend, spanning
+from fogproof.reports.charts.axes import DASHED, Axes, Marker, Scale, spanning
 from fogproof.reports.charts.colours import EXPECTED, FIFTH, FOURTH, INK, OBSERVED, SIXTH, THIRD
+from fogproof.reports.charts.direct_labels import EndLabel, height_of, write_labels
 from fogproof.reports.charts.sheet import FONT_SIZE, Sheet
 from fogproof.reports.text import label
 
 _COLOURS = (OBSERVED, EXPECTED, THIRD, FOURTH, FIFTH, SIXTH)
 _MARKERS: tuple[Marker, ...] = ("dot", "square", "triangle", "diamond", "cross")
 _DOTTED = (2.0, 3.0)
+_LOWEST = 3e-6
+"""Relative errors below are nobody's question, and would flatten all others; their curves leave the picture."""
+_LETTERS = 28
+"""In a line of a curve's name."""
+_SIDE = 240.0
 
 
 @dataclass(frozen=True)
@@ -43,26 +49,28 @@ class Convergence:
     up: str
     curves: tuple[ErrorCurve, ...]
     confidence: float
-    slope: float = -0.5
+    slope: float = 0.0
+
+    HOW: ClassVar[str] = (
+        "Lower is better, and further left is sooner. Choose the error you can live with on the left, follow it to "
+        "the right: the curve met first is the estimator to take. A curve of half the slope needs a hundred times the "
+        "samples for a tenth of the error. The band around a curve holds the truth; where bands overlap, the data do "
+        "not tell. Dashed: Sobol points, or steps of a march in place of random samples. Dotted: what the oracle "
+        "predicts. A curve that becomes level has a bias, and no time takes it away."
+    )
 
     @property
     def size(self) -> tuple[float, float]:
-        """Width and height [px]: a line of the legend for each curve."""
-        return 560.0, 330.0 + 1.4 * FONT_SIZE * (len(self.curves) + 2)
+        """Width and height [px]: room for the names beside the curves."""
+        return 680.0, max(380.0, 70.0 + height_of([curve.name for curve in self.curves], _LETTERS))
 
     def draw(self, sheet: Sheet) -> str:
-        """Draw each curve with its confidence band, the oracle's prediction dotted, and a line of the expected slope."""
-        keys = [Key(label(c.name, 62), *_look(c.look), DASHED if c.dashed else None, joined=True) for c in self.curves]
-        known = any(np.isfinite(curve.predicted).any() for curve in self.curves)
-        keys += [Key("predicted by the oracle", INK, dash=_DOTTED)] if known else []
-        keys += [Key(f"slope −{abs(self.slope):g}", INK, dash=(9, 5))] if self.slope else []
-        y = 0.0
-        for key in keys:
-            y += legend(sheet, [key], 20, y, sheet.width) - 0.3 * FONT_SIZE
-        every = [np.array(values) for c in self.curves for values in (c.error, c.predicted)]
+        """Draw each curve with its confidence band and name, the oracle's prediction dotted, and a line of the expected slope."""
         across = spanning(np.concatenate([np.array(c.effort) for c in self.curves]), log=True)
-        up = spanning(np.concatenate(every), log=True, margin=0.08)
-        axes = Axes(sheet, (92, y + 8, sheet.width - 108, sheet.height - y - 58), across, up)
+        every = np.concatenate([np.array(c.error) for c in self.curves])
+        up = spanning(np.maximum(every, min(_LOWEST, every.max())), log=True, margin=0.08)
+        right, bottom = sheet.width - _SIDE, sheet.height - 50
+        axes = Axes(sheet, (84, 10, right - 84, bottom - 10), across, up)
         axes.frame(self.across, self.up)
         for curve in self.curves:
             axes.band(curve.effort, np.maximum(curve.low, up.low), curve.high, _look(curve.look)[0], 0.12)
@@ -75,15 +83,32 @@ class Convergence:
             start = max(float(np.nanmax(c.error)) for c in self.curves)
             ends = np.array([across.low, across.high])
             axes.line(ends, 1.3 * start * (ends / across.low) ** self.slope, INK, (9, 5), 1)
+        labels = [_end_of(curve, axes, up) for curve in self.curves]
+        write_labels(sheet, labels, right, 4, bottom + FONT_SIZE, _LETTERS)
         return self._words()
 
     def _words(self) -> str:
         lowest = min(self.curves, key=lambda curve: curve.error[-1])
         where = self.across.partition(" [")[0]
+        guide = f" The long dashes fall with the power {self.slope:g}." if self.slope else ""
         return (
             f"Error over {where} of {len(self.curves)} estimators, both logarithmic, with {self.confidence:.0%} confidence bands. "
-            f"The lowest at its end is {label(lowest.name, 60)}: {lowest.error[-1]:.2g}."
+            f"The lowest at its end is {label(lowest.name, 90)}: {lowest.error[-1]:.2g}.{guide}"
         )
+
+
+def _end_of(curve: ErrorCurve, axes: Axes, up: Scale) -> EndLabel:
+    """Return the name of a curve, tied to its last point that can be seen, or to where it leaves the picture."""
+    x, y = np.log(np.array(curve.effort)), np.log(np.array(curve.error))
+    floor, below = np.log(up.low), np.flatnonzero(np.array(curve.error) < up.low)
+    at = x[-1], y[-1]
+    if len(below):
+        k = int(below[0])
+        share = 0.0 if k == 0 else (y[k - 1] - floor) / (y[k - 1] - y[k])
+        at = (x[0], floor) if k == 0 else (x[k - 1] + share * (x[k] - x[k - 1]), floor)
+    colour, _ = _look(curve.look)
+    (end,) = axes.at([float(np.exp(at[0]))], [float(np.exp(at[1]))])
+    return EndLabel(label(curve.name, 90), colour, end, DASHED if curve.dashed else None)
 
 
 def _look(number: int) -> tuple[str, Any]:

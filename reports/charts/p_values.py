@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -16,6 +17,12 @@ class PValues:
     """`p` are exact p-values of findings, in any order."""
 
     p: tuple[float, ...]
+
+    HOW: ClassVar[str] = (
+        "Each p-value, the smallest at the left, against where it should lie if every subject is right: on the dashed "
+        "line, within the grey band. Points below the band are smaller than chance makes them; look at the smallest "
+        "first."
+    )
 
     def draw(self, sheet: Sheet) -> str:
         """Draw sorted p-values over their expectation i/(n + 1), both logarithmic, with 99.9% of each rank's range.
@@ -59,6 +66,12 @@ class PValueHistogram:
 
     p: tuple[float, ...]
     bins: int = 20
+
+    HOW: ClassVar[str] = (
+        "If every subject is right, all p-values are equally likely and the bars are level, but for chance: the grey "
+        "band. A high bar at the left means that something is wrong, even where no single check was sure. A slope to "
+        "the right means that checks are duller than they say."
+    )
 
     def draw(self, sheet: Sheet) -> str:
         """Draw the counts, and the range that holds each with probability 99.9% if all subjects are right: binomial."""

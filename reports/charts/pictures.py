@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 
@@ -16,7 +16,9 @@ from fogproof.reports.files import write_file
 
 
 class PictureChart(Protocol):
-    """Data of one figure that draws itself."""
+    """Data of one figure that draws itself; HOW tells how to read figures of its kind, "" where they speak for themselves."""
+
+    HOW: ClassVar[str]
 
     def draw(self, sheet: Sheet) -> str:
         """Draw on an empty sheet and return what it shows in one sentence."""
@@ -25,12 +27,13 @@ class PictureChart(Protocol):
 
 @dataclass(frozen=True)
 class Picture:
-    """A finished figure: `stem` is its file name without suffix, `words` say what it shows."""
+    """A finished figure: `stem` is its file name without suffix, `words` say what it shows, `how` how to read it."""
 
     stem: str
     words: str
     svg: str
     png: bytes
+    how: str = ""
 
     def save(self, folder: Path) -> None:
         """Write `folder/STEM.svg` and `folder/STEM.png`."""
@@ -60,4 +63,4 @@ def render(chart: PictureChart, stem: str, size: tuple[float, float] = (560, 340
     sheet = Sheet(*size, PAPER)
     with np.errstate(all="ignore"):  # a record changed by hand may hold anything; what is not finite is not drawn
         words = chart.draw(sheet)
-    return Picture(stem, words, sheet.svg(), png(sheet))
+    return Picture(stem, words, sheet.svg(), png(sheet), chart.HOW)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -19,6 +20,12 @@ class Resolutions:
     """One (case name, kind of error, smallest error caught) for each pass that states one."""
 
     passes: tuple[tuple[str, str, float], ...]
+
+    HOW: ClassVar[str] = (
+        "What a pass is worth: an error larger than the mark would have been rejected, with the probability that the "
+        "verdict states. Further left is sharper. A mark far to the right is a pass that says little: give that case "
+        "more samples."
+    )
 
     @property
     def size(self) -> tuple[float, float]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -21,6 +22,12 @@ class RunningMean:
     n: tuple[float, ...]
     mean: tuple[float, ...]
     stderr: tuple[float, ...]
+
+    HOW: ClassVar[str] = (
+        "The mean after so many realisations, with two standard errors. It should close in on the line, which is the "
+        "oracle's value, and wander about it less and less. A mean that settles beside the line is biased; one that "
+        "jumps late has a heavy tail."
+    )
 
     def __post_init__(self) -> None:
         for name in ("mean", "stderr"):

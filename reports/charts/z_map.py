@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -21,6 +22,11 @@ class ZMap:
     edges: tuple[tuple[float, ...], tuple[float, ...]]
     labels: tuple[str, str]
     z: tuple[tuple[float, ...], ...]
+
+    HOW: ClassVar[str] = (
+        "The domain cut into cells. Red: more samples fell there than the pdf says; blue: fewer. A right sampler "
+        "gives pale speckles without shape; a stripe, a ramp or a patch is an error, and its shape says of what kind."
+    )
 
     def __post_init__(self) -> None:
         n, m = (len(axis) - 1 for axis in self.edges)

@@ -1,4 +1,4 @@
-// Filter by outcome and by words, and open the case that the address names. The page is complete without this.
+// Filter by outcome and by words, sort tables, and open the case that the address names. The page is complete without this.
 "use strict";
 {
   const form = document.getElementById("filter");
@@ -41,6 +41,32 @@
     section.open = true;
     target.scrollIntoView();
   };
+
+  const sortable = (table) => {
+    const heads = [...table.tHead.rows[0].cells];
+    const body = table.tBodies[0];
+    const valueOf = (row, column) => {
+      const cell = row.cells[column];
+      const text = cell.dataset.value ?? cell.textContent.trim();
+      return text !== "" && Number.isFinite(Number(text)) ? Number(text) : text.toLowerCase();
+    };
+    const compare = (a, b) => (typeof a === typeof b ? (a < b ? -1 : a > b ? 1 : 0) : typeof a === "number" ? -1 : 1);
+    heads.forEach((head, column) => {
+      const button = document.createElement("button");
+      button.type = "button";
+      button.append(...head.childNodes);
+      head.append(button);
+      button.addEventListener("click", () => {
+        const falling = head.getAttribute("aria-sort") === "ascending";
+        heads.forEach((other) => other.removeAttribute("aria-sort"));
+        head.setAttribute("aria-sort", falling ? "descending" : "ascending");
+        const rows = [...body.rows].map((row) => [valueOf(row, column), row]);
+        rows.sort((a, b) => (falling ? compare(b[0], a[0]) : compare(a[0], b[0])));
+        body.append(...rows.map((pair) => pair[1]));
+      });
+    });
+  };
+  document.querySelectorAll("table.sortable").forEach(sortable);
 
   if (form) {
     form.hidden = false;

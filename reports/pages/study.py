@@ -1,8 +1,8 @@
-"""The page of a study: the answers first, then how fast each estimator of each scene nears the oracle's value."""
+"""The page of a study: the answers and their picture first, then how fast each estimator nears the oracle's value."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, nan
 from pathlib import Path
@@ -14,7 +14,7 @@ from fogproof.reports.pages.page import STATUSES
 from fogproof.reports.pages.summaries import needs
 from fogproof.reports.pages.templates import fill
 from fogproof.reports.records.runs import Case, Status
-from fogproof.reports.records.studies import SceneRecord, StudyEntry, StudyRecord, as_run
+from fogproof.reports.records.studies import Answer, SceneRecord, StudyEntry, StudyRecord, TargetRecord, as_run
 from fogproof.reports.text import file_stem
 
 
@@ -28,11 +28,16 @@ class StudyRow:
 
 @dataclass(frozen=True)
 class SceneShown:
-    """A scene with its figures (title, picture), and its estimators, the best first."""
+    """A scene with its figures (title, picture), the first over time, and its estimators, the soonest first."""
 
     scene: SceneRecord
     rows: tuple[StudyRow, ...]
     figures: tuple[tuple[str, Picture], ...]
+
+    @property
+    def targets(self) -> tuple[TargetRecord, ...]:
+        """The errors that times are told for."""
+        return next((row.entry.speed.targets for row in self.rows if row.entry.speed and row.entry.speed.targets), ())
 
 
 def write_study_page(study: StudyRecord, folder: Path) -> Path:
@@ -48,7 +53,9 @@ def write_study_page(study: StudyRecord, folder: Path) -> Path:
         for _, picture in figures:
             picture.save(folder / "figures")
         rows = [StudyRow(entry, cases[f"{scene.name} / {entry.name}"]) for entry in scene.estimators]
-        shown.append(SceneShown(scene, tuple(sorted(rows, key=_place)), figures))
+        place = {name: k for k, name in enumerate((*scene.answer.ranking, *scene.answer.out))}
+        rows.sort(key=lambda row: place.get(row.entry.name, len(place)))
+        shown.append(SceneShown(scene, tuple(rows), figures))
     counts = {status: sum(case.status == status for case in run.cases) for status in STATUSES}
     page = fill(
         "study.html",
@@ -56,6 +63,7 @@ def write_study_page(study: StudyRecord, folder: Path) -> Path:
         study=study,
         run=run,
         scenes=shown,
+        questions=_questions(study, shown),
         counts=counts,
         heavy=[row for one in shown for row in one.rows if row.entry.warning],
         needs=needs(run.cases),
@@ -80,7 +88,7 @@ def headline(study: StudyRecord, counts: Mapping[Status, int]) -> tuple[str, str
         first = "Something came out worse than before"
     elif counts["inconclusive"]:
         n = counts["inconclusive"]
-        first = f"No bias was found, but {n} of {total} estimators {'is' if n == 1 else 'are'} not judged"
+        first = f"No bias was found, but {n} of {total} estimators {'is' if n == 1 else 'are'} not judged unbiased yet"
     else:
         first = "Every estimator came out as expected"
     words = {"passed": "unbiased as far as seen", "known": "biased as declared", "rejected": "biased"}
@@ -95,49 +103,49 @@ def _tone(study: StudyRecord, counts: Mapping[Status, int]) -> str:
     return "care" if counts["inconclusive"] or not sum(counts.values()) else "good"
 
 
-def _place(row: StudyRow) -> tuple[float, float]:
-    """Return where an estimator stands: by rank, then by efficiency; what is biased last."""
-    speed = row.entry.speed
-    if speed is None or speed.efficiency is None:
-        return inf, inf
-    return speed.rank or 1e9, -speed.efficiency
+def _questions(study: StudyRecord, shown: Sequence[SceneShown]) -> list[tuple[str, list[tuple[Answer, SceneShown]]]]:
+    """Return the answers by question, both in the order of the study."""
+    scenes = {one.scene.name: one for one in shown}
+    asked: dict[str, list[tuple[Answer, SceneShown]]] = {}
+    for answer in study.answers:
+        if answer.scene in scenes:
+            asked.setdefault(answer.question, []).append((answer, scenes[answer.scene]))
+    return list(asked.items())
 
 
 def _figures(scene: SceneRecord, confidence: float) -> Iterator[tuple[str, str, Convergence]]:
-    """Yield (name, title, drawing): random points, then Sobol points and marching, each over their number and over time.
+    """Yield (name, title, drawing): all estimators over time; then random points, and Sobol points and marching, over their number.
 
-    Sobol points and marching reach errors far below those of random points, and would flatten their curves. Over time the best
-    estimator with random points stands among them.
+    Errors are relative to the reference, unless that is 0.
     """
+    size = abs(scene.reference.value)
     unit = "" if scene.unit == "1" else f" [{scene.unit.replace('^2', '²')}]"
-    up, time = f"root mean square error{unit}", "time of one estimate [s]"
+    up = "relative root mean square error" if size else f"root mean square error{unit}"
     looks = list(dict.fromkeys((entry.kind, str(entry.options)) for entry in scene.estimators))
-    random: tuple[list[ErrorCurve], list[ErrorCurve]] = ([], [])
-    others: tuple[list[ErrorCurve], list[ErrorCurve]] = ([], [])
+    timed: list[ErrorCurve] = []
+    counted: tuple[list[ErrorCurve], list[ErrorCurve]] = ([], [])
     for entry in scene.estimators:
         if entry.axis == "nothing":  # exact: there is no error to fall
             continue
         look = looks.index((entry.kind, str(entry.options)))
         other = entry.points == "sobol" or entry.axis == "steps"
-        counted, timed = others if other else random
-        counted += _curve(entry, look, [float(c.count) for c in entry.counts], other)
+        counted[other].extend(_curve(entry, look, [float(c.count) for c in entry.counts], other, size or 1.0))
         if entry.speed:
-            curve = _curve(entry, look, [timing.seconds for timing in entry.speed.counts], other)
-            timed += curve
-            if entry.name == scene.answer.best_random:
-                others[1].extend(curve)
+            milliseconds = [1e3 * timing.seconds for timing in entry.speed.counts]
+            timed += _curve(entry, look, milliseconds, other, size or 1.0, False)
     for name, across, title, curves, slope in (
-        ("samples", "samples", "Error against samples", random[0], -0.5),
-        ("time", time, "Error against time", random[1], -0.5),
-        ("other", "Sobol points, or steps of a march", "Sobol points and marching", others[0], -1.0),
-        ("other-time", time, "Sobol points and marching against time", others[1] if others[0] else [], -1.0),
+        ("time", "processor time of one estimate [ms]", "Error against time", timed, 0.0),
+        ("samples", "samples", "Error against samples", counted[0], -0.5),
+        ("other", "Sobol points, or steps of a march", "Sobol points and marching", counted[1], -1.0),
     ):
         if curves:
             yield name, title, Convergence(across, up, tuple(curves), confidence, slope)
 
 
-def _curve(entry: StudyEntry, look: int, effort: list[float], dashed: bool) -> list[ErrorCurve]:
-    """Return the curve of an estimator over its effort, without what a logarithm cannot show; none of fewer than one point."""
+def _curve(
+    entry: StudyEntry, look: int, effort: list[float], dashed: bool, size: float, predicted: bool = True
+) -> list[ErrorCurve]:
+    """Return the curve of an estimator over its effort, relative to `size`, without what a logarithm cannot show; or none."""
     kept = [(x, c) for x, c in zip(effort, entry.counts, strict=True) if x > 0 and 0 < c.rmse < inf]
     if not kept:
         return []
@@ -147,10 +155,10 @@ def _curve(entry: StudyEntry, look: int, effort: list[float], dashed: bool) -> l
             entry.label,
             look,
             tuple(x for x, _ in kept),
-            tuple(c.rmse for c in counts),
-            tuple(c.rmse_low for c in counts),
-            tuple(c.rmse_high for c in counts),
-            tuple(nan if c.predicted is None else c.predicted for c in counts),
+            tuple(c.rmse / size for c in counts),
+            tuple(c.rmse_low / size for c in counts),
+            tuple(c.rmse_high / size for c in counts),
+            tuple(nan if c.predicted is None or not predicted else c.predicted / size for c in counts),
             dashed,
         )
     ]

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fogproof.reports.text import anchor, label
+from fogproof.text import duration as in_words
 from fogproof.text import visible
 
 if TYPE_CHECKING:
@@ -65,10 +66,7 @@ def number(value: float | None) -> str:
 
 def duration(seconds: float) -> str:
     """Return a time with a unit that suits it."""
-    for unit, size in (("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)):
-        if seconds >= size:
-            return f"{seconds / size:.3g}\N{NARROW NO-BREAK SPACE}{unit}"
-    return f"{seconds / 1e-9:.3g}\N{NARROW NO-BREAK SPACE}ns"
+    return in_words(seconds, "\N{NARROW NO-BREAK SPACE}")
 
 
 def grouped(value: float) -> str:

@@ -21,18 +21,22 @@ class EstimateRecord:
 
 
 @dataclass(frozen=True)
-class Slope(EstimateRecord):
-    """The power of the number of samples with which the error falls; `expected` is -0.5 for random points."""
+class OrderRecord(EstimateRecord):
+    """The error falls like count^-value between two counts; see `study.convergence.Order`. `expected` is 0.5 for random points."""
 
+    first: int
+    last: int
+    points: int
+    misfit: float
+    p: float | None = None
     expected: float | None = None
 
 
 @dataclass(frozen=True)
-class MarchRecord:
-    """How a marched estimate nears the reference: |error| ~ steps^-order, down to `floor` at `at` steps."""
+class FloorRecord:
+    """How near a marched estimate comes, with so many steps, and whether rounding ends the fall there."""
 
-    order: EstimateRecord | None
-    floor: float
+    error: float
     at: int
     reached: bool
 
@@ -64,28 +68,30 @@ class Count:
 
 @dataclass(frozen=True)
 class Timing:
-    """Seconds of one realisation at one count, and of the whole estimate."""
+    """Processor seconds of one estimate with so many samples or steps."""
 
     count: int
-    value: float
+    seconds: float
     low: float
     high: float
-    seconds: float
 
 
 @dataclass(frozen=True)
 class TargetRecord:
-    """What a relative error takes; None if it is never reached, and `how` says why."""
+    """What a relative error takes; None if it is not reached: `why` says how near the last count comes, in `low` seconds."""
 
     error: float
+    how: Literal["measured", "less-than", "extrapolated", "not-reached", "never"]
+    why: str
     samples: float | None
     seconds: float | None
-    how: str
+    low: float
+    high: float | None
 
 
 @dataclass(frozen=True)
 class Speed:
-    """Time, and what it buys: efficiency = 1 / (mean squared error x time), relative to the scene's best random estimator."""
+    """Time, and what it buys: `relative` is the soonest's time to the first target's error, divided by this one's."""
 
     cpu: EstimateRecord
     wall: float
@@ -93,10 +99,8 @@ class Speed:
     cpu_total: float
     counts: tuple[Timing, ...]
     targets: tuple[TargetRecord, ...]
-    efficiency: float | None = None
     relative: EstimateRecord | None = None
     rank: int | None = None
-    gain: EstimateRecord | None = None
 
 
 @dataclass(frozen=True)
@@ -120,18 +124,19 @@ class StudyEntry:
     options: dict[str, Any] = field(default_factory=dict)
     bias: EstimateRecord | None = None
     variance: Variance | None = None
-    slope: Slope | None = None
-    march: MarchRecord | None = None
+    wants: float = 1.0
+    order: OrderRecord | None = None
+    floor: FloorRecord | None = None
     cost: float | None = None
     speed: Speed | None = None
 
 
 @dataclass(frozen=True)
 class Answer:
-    """Which estimator to take, in words."""
+    """Which estimator to take, in words; both names are of the soonest to the first target's error."""
 
     best: str | None
-    best_random: str | None
+    best_unbiased: str | None
     text: str
     ranking: tuple[str, ...] = ()
     out: tuple[str, ...] = ()
@@ -215,6 +220,7 @@ class StudyRecord:
     failures: tuple[dict[str, Any], ...] = ()
     sessions: tuple[dict[str, Any], ...] = ()
     mixed: bool = False
+    advice: str = ""
     history: History | None = None
     state: Literal["finished", "interrupted"] = "finished"
 

@@ -32,11 +32,14 @@ from fogproof.domains import (
     UnitSquare,
 )
 from fogproof.errors import FogproofError, InvalidValueError, UnsupportedError
+from fogproof.scene import cameras as _cameras
 from fogproof.scene import lights as _lights
 from fogproof.scene import media as _media
 from fogproof.scene import occluders as _occluders
 from fogproof.scene import phase as _phase
 from fogproof.scene import surfaces as _surfaces
+from fogproof.scene.cameras import *  # noqa: F403
+from fogproof.scene.image_scenes import ImageScene
 from fogproof.scene.lights import *  # noqa: F403
 from fogproof.scene.media import *  # noqa: F403
 from fogproof.scene.occluders import *  # noqa: F403
@@ -68,8 +71,10 @@ if TYPE_CHECKING:
         fresh_seed,
         samples_for,
     )
+    from fogproof.gradient_check import check_gradient
+    from fogproof.relation_check import check_relations
     from fogproof.runs import Run
-    from fogproof.scene.files import read_scene
+    from fogproof.scene.files import read_image_scene, read_scene
     from fogproof.scene.volume_files import read_voxel_grid
     from fogproof.scene_estimator import estimator_for
 
@@ -88,6 +93,7 @@ __all__ = [
     "FogproofError",
     "HalfLine",
     "HalfSpace",
+    "ImageScene",
     "InconclusiveError",
     "Interval",
     "InvalidValueError",
@@ -122,17 +128,21 @@ __all__ = [
     "check_convergence",
     "check_estimator",
     "check_family",
+    "check_gradient",
     "check_mis",
     "check_reciprocity",
+    "check_relations",
     "check_sampler",
     "check_streams",
     "compare_estimators",
     "estimator_for",
     "fresh_seed",
+    "read_image_scene",
     "read_scene",
     "read_voxel_grid",
     "samples_for",
 ]
+__all__ += _cameras.__all__
 __all__ += _lights.__all__
 __all__ += _media.__all__
 __all__ += _occluders.__all__
@@ -159,8 +169,11 @@ _LAZY = {
     "compare_estimators": "fogproof.checks",
     "fresh_seed": "fogproof.checks",
     "samples_for": "fogproof.checks",
+    "check_gradient": "fogproof.gradient_check",
+    "check_relations": "fogproof.relation_check",
     "Run": "fogproof.runs",
     "estimator_for": "fogproof.scene_estimator",
+    "read_image_scene": "fogproof.scene.files",
     "read_scene": "fogproof.scene.files",
     "read_voxel_grid": "fogproof.scene.volume_files",
 }

@@ -18,7 +18,7 @@ from typing import Any, get_type_hints
 from fogproof import analytic
 from fogproof.analytic.declaration import Declaration, declaration_of
 from fogproof.contracts import Reference
-from fogproof.scene import Scene
+from fogproof.scene import ImageScene, Scene
 from fogproof.scene.arrays import Numbers
 
 
@@ -75,10 +75,12 @@ def quantities() -> dict[str, Quantity]:
 
 def _quantity(name: str, function: FunctionType, told: Declaration) -> Quantity:
     arguments, call = _arguments(function), told.answer or function
-    if list(arguments) == ["scene"]:  # programs give a scene by its keys
-        arguments, call = _fields(Scene), lambda **keys: function(Scene(**keys))
-    documentation = inspect.getdoc(function) or ""
     meanings = {**_meanings_of(Scene), **_meanings_of(function)}
+    if list(arguments) == ["scene"]:  # programs give a scene by its keys
+        scene: type[Scene] | type[ImageScene] = arguments["scene"]
+        arguments, call = _fields(scene), lambda **keys: function(scene(**keys))
+        meanings = {**_meanings_of(scene), **meanings}
+    documentation = inspect.getdoc(function) or ""
     return Quantity(
         name=name,
         summary=" ".join(documentation.split("\n\n")[0].split()),

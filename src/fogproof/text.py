@@ -21,6 +21,14 @@ def one_line(text: str) -> str:
     return " ".join(visible(text).split())
 
 
+def duration(seconds: float, space: str = " ") -> str:
+    """Return a time with a unit that suits it."""
+    for unit, size in (("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)):
+        if seconds >= size:
+            return f"{seconds / size:.3g}{space}{unit}"
+    return f"{seconds / 1e-9:.3g}{space}ns"
+
+
 def spreadsheet_cell(value: Any) -> Any:
     """Return what stands in a cell of CSV: None is empty, and a text that a spreadsheet would take for a formula is none any more.
 

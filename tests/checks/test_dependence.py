@@ -1,11 +1,13 @@
 """Realisations that depend on each other are found in any channel and order, at any distance; independent ones are left alone."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy import stats
 
 from fogproof import check_estimator, compare_estimators
-from fogproof.checks.statistics.dependence import Succession, concordance
+from fogproof.checks.statistics.dependence import Succession, _counted, concordance, evenness_of_calls
 
 
 def lagged(lag):
@@ -23,6 +25,22 @@ def antithetic(rng, n):
 
 def shuffled_strata(rng, n):
     return rng.permutation((np.arange(n) + rng.random(n)) / n) - 0.5
+
+
+def hypercube(rng, n):
+    strata = [rng.permutation((np.arange(n) + rng.random(n)) / n) for _ in range(2)]
+    return np.sin(7 * strata[0]) + strata[1] ** 2 - (1 - np.cos(7)) / 7 - 1 / 3
+
+
+def stratified_halves(rng, n):
+    return np.concatenate([shuffled_strata(rng, n // 2), shuffled_strata(rng, n - n // 2)])
+
+
+def jittered(rng, n):
+    side = int(np.sqrt(n))
+    cells = rng.permutation(side * side)
+    x = (np.stack([cells // side, cells % side], axis=-1) + rng.random((side * side, 2))) / side
+    return np.concatenate([x, rng.random((n - side * side, 2))]).prod(axis=1) - 0.25
 
 
 def twice(rng, n):
@@ -48,6 +66,11 @@ DEPENDENT = [
     ("seventeen of one seed in a call", lambda rng, n: np.tile(rng.normal(size=n // 17 + 1), 17)[:n], 0.0),
     ("antithetic halves", antithetic, 0.0),
     ("shuffled strata", shuffled_strata, 0.0),
+    ("stratified halves", stratified_halves, 0.0),
+    ("strata of a half line", lambda rng, n: -np.log(0.5 - shuffled_strata(rng, n)), 1.0),
+    ("strata of two values", lambda rng, n: (shuffled_strata(rng, n) < -0.2) * 1.0, 0.3),
+    ("Latin hypercube", hypercube, 0.0),
+    ("jittered grid", jittered, 0.0),
     ("returned twice", twice, 0.0),
     ("returned twice, shuffled", twice_shuffled, 0.0),
     ("second channel", second_channel, [0.0, 0.0]),
@@ -60,10 +83,10 @@ DEPENDENT = [
 def test_dependent_realisations_are_found(name, draw, mean):
     verdict = check_estimator(draw, mean, samples=400_000)
     assert verdict.outcome == "rejected", str(verdict)
-    assert verdict.cause == "correlation"
+    assert verdict.cause in ("correlation", "stratified samples")
     if np.ndim(mean) == 0:
         compared = compare_estimators(draw, lambda rng, n: rng.normal(size=n), samples=400_000)
-        assert compared.cause == "correlation", str(compared)
+        assert compared.cause in ("correlation", "stratified samples"), str(compared)
 
 
 INDEPENDENT = [
@@ -82,6 +105,19 @@ def test_independent_realisations_are_not(name, draw, mean):
     for _ in range(3):
         verdict = check_estimator(draw, mean, samples=200_000)
         assert verdict.outcome != "rejected", str(verdict)
+
+
+def test_calls_of_a_handful_of_values_are_as_uneven_as_they_are():
+    """Cells that are never hit do not count: the test of evenness has its false-alarm probability for any law."""
+    laws = (lambda rng: rng.random(16_000) < 0.3, lambda rng: rng.poisson(2, 16_000), lambda rng: rng.random(16_000))
+    for draw in laws:
+        found = 0
+        for seed in range(200):
+            x = draw(np.random.default_rng([seed, 7])).astype(float)[:, None]
+            record = Succession.about(x)
+            record = replace(record, counts=tuple(_counted(part, record.edges) for part in np.split(x, 8)))
+            found += evenness_of_calls("evenness", record, 0.01).outcome == "rejected"
+        assert found <= 12  # P(more | 1 %) < 1e-6
 
 
 def test_pairs_of_large_values_have_the_exact_law_of_runs():

@@ -1,5 +1,7 @@
 """What is declared decides whatever the law; what is not declared is never relied on, and every scale is as good as another."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -95,7 +97,7 @@ def test_a_finite_set_is_judged_as_it_is_and_nothing_is_drawn_twice():
         check_estimator(np.zeros((4, 4, 3)), [1, 2, 3])
 
 
-@pytest.mark.parametrize(("samples", "most"), [(30, 1), (900, 1), (5000, 2), (65536, 2), (1_000_000, 21)])
+@pytest.mark.parametrize(("samples", "most"), [(30, 1), (900, 1), (5000, 2), (65536, 8), (1_000_000, 28)])
 def test_a_renderer_is_not_asked_often(samples, most):
     asked = []
 
@@ -271,3 +273,42 @@ def test_comparisons_that_are_none_are_explained(second, options, words):
         compare_estimators(uniform, second, **options)
     with pytest.raises(InvalidValueError, match="pairs"):
         compare_estimators(np.zeros(10), np.zeros(11))
+
+
+@pytest.mark.parametrize("base", [1e15, -1e15, 1e6])
+def test_rounding_of_large_values_counts_in_their_exact_variance(base):
+    for _ in range(3):
+        verdict = check_estimator(lambda r, n: base + r.random(n), base + 0.5, variance=1 / 12, samples=400_000)
+        assert verdict.outcome == "not rejected", str(verdict)
+    wrong = check_estimator(lambda r, n: base + 2 * r.random(n), base + 1, variance=1 / 12, samples=100_000)
+    assert wrong.outcome == "rejected"
+
+
+def reported(values, less=0):
+    """Return an estimator of means of so many normal values with their standard errors, divided by their number less one or not."""
+
+    def draw(rng, n):
+        x = rng.normal(1, 1, (n, values))
+        return Draws(x.mean(axis=1), stderr=x.std(axis=1, ddof=1 - less) / np.sqrt(values))
+
+    return draw
+
+
+def test_standard_errors_that_divide_by_n_are_found_or_it_is_said_with_how_many():
+    said = next(f.message for f in check_estimator(reported(12), 1.0, samples=12_000).findings if "coverage" in f.check)
+    needed = float(re.search(r"would show with (\S+) realisations", said)[1])
+    assert 14_000 < needed < 40_000
+    found = [check_estimator(reported(12, less=1), 1.0, samples=needed).outcome for _ in range(4)]
+    assert found.count("rejected") >= 2  # each with probability 0.99 or so
+    assert check_estimator(reported(12), 1.0, samples=needed).outcome == "not rejected"
+
+
+def test_standard_errors_of_two_halves_have_one_degree_of_freedom():
+    def halves(rng, n, factor=0.5):
+        even, odd = rng.normal(1, 1, (2, n))
+        return Draws((even + odd) / 2, stderr=factor * np.abs(even - odd))
+
+    verdict = check_estimator(halves, 1.0, samples=100_000)
+    assert verdict.outcome == "not rejected", str(verdict)
+    assert "with 1 degree of freedom" in str([f.message for f in verdict.findings])
+    assert check_estimator(lambda r, n: halves(r, n, 1.0), 1.0, samples=100_000).cause == "wrong standard errors"

@@ -113,3 +113,20 @@ def test_families_that_make_nothing_are_explained():
         verdict = fogproof.check_family(make, iter([1.0, 2.0]), samples=10_000)
         assert verdict.outcome == "rejected"
         assert words in str(verdict)
+
+
+def test_no_decision_says_what_decides():
+    class Heavy:
+        reference = float(np.exp(4.5))
+
+        def __init__(self, spread):
+            self.spread = spread
+
+        def draw(self, rng, n):
+            return rng.lognormal(0, self.spread, n)
+
+    verdict = fogproof.check_family(Heavy, [3.0], samples=2000)
+    assert verdict.outcome == "inconclusive"
+    assert "At 3.0, with 2000: mean " in verdict.findings[0].message
+    assert "ask for about" in verdict.findings[0].message
+    assert "It got 1 / 1 of samples=2000" in verdict.findings[0].message

@@ -3,7 +3,6 @@
 import dataclasses
 import io
 import json
-import secrets
 import subprocess
 import sys
 import time
@@ -233,6 +232,7 @@ def test_who_stops_reading_ends_the_service(tmp_path):
 
 
 def test_fuzzed_lines_are_all_answered():
-    outcomes = fuzz(600, seed=secrets.randbits(32), seconds=1.0)
+    outcomes = fuzz(600, seed=1, seconds=1.0)
+    assert outcomes["internal"] == 0
     assert outcomes["answered"] > 100
     assert outcomes["invalid-input"] > 100

@@ -184,18 +184,19 @@ def from_direction(medium, ray, light, occluders=(), shape=None, reach=60):
         back = [-x for x in v]
         end = mp.mpf(min(float(ray.length), reach))
 
+        low, high = (mp.mpf(0), end) if shape is None or isinstance(shape, Unbounded) else _chord(shape, o, d, end)
+        if not high > low:
+            return mp.mpf(0)
+
         def lit(t):
             x = along(o, d, t)
-            return holds(shape, x) and not any(hidden(o_, x, along(x, back, mp.mpf(1e4))) for o_ in occluders)
-
-        entries = pieces(lambda t: holds(shape, along(o, d, t)), mp.mpf(0), end)
-        enter = entries[0][0] if entries else mp.mpf(0)
+            return not any(hidden(o_, x, along(x, back, mp.mpf(1e4))) for o_ in occluders)
 
         def f(t):
-            return mp.exp(-sigma * (t - enter + way_out(shape, along(o, d, t), back)[0]))
+            return mp.exp(-sigma * (t - low + way_out(shape, along(o, d, t), back)[0]))
 
         total = mp.mpf(0)
-        for start, stop in pieces(lit, mp.mpf(0), end):
+        for start, stop in pieces(lit, low, high):
             for face in range(-1, 6):
                 alike = pieces(lambda t, face=face: way_out(shape, along(o, d, t), back)[1] == face, start, stop, 60)
                 total += sum((integral(f, mp.linspace(*piece, 5)) for piece in alike), mp.mpf(0))

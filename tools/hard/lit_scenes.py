@@ -133,26 +133,29 @@ def ball_walks(rng):
     return lambda: analytic.ball_albedo(c, R), mp.mpf(share), mp.mpf(float(doubt)), f"{c} {R}"
 
 
+def air_truth(wavelength, column):
+    """Bodhaine's cross section of a molecule [m^2]; with `column`, times how many stand above a square metre of the sea."""
+    with mp.workdps(60):
+        s = (mp.mpf(10) ** -6 / mp.mpf(wavelength)) ** 2
+        n = 1 + (5792105 / (mp.mpf("238.0185") - s) + 167917 / (mp.mpf("57.362") - s)) / 10**8
+        nitrogen = mp.mpf("1.034") + mp.mpf("3.17e-4") * s
+        oxygen = mp.mpf("1.096") + mp.mpf("1.385e-3") * s + mp.mpf("1.448e-4") * s**2
+        parts = [("78.084", nitrogen), ("20.946", oxygen), ("0.934", mp.mpf(1)), ("0.036", mp.mpf("1.15"))]
+        king = sum(mp.mpf(a) * b for a, b in parts) / sum(mp.mpf(a) for a, _ in parts)
+        number_density = 101325 / (mp.mpf("1.380649e-23") * mp.mpf("288.15"))
+        truth = 24 * mp.pi**3 * ((n**2 - 1) / (n**2 + 2)) ** 2 / (mp.mpf(wavelength) ** 4 * number_density**2) * king
+        return (
+            truth * 101325 * mp.mpf("6.02214076e23") / (mp.mpf("28.9647e-3") * mp.mpf("9.80665")) if column else truth
+        )
+
+
 def air(column):
-    """Bodhaine's cross section of a molecule, times how many stand above a square metre of the sea."""
+    """The same at any wavelength."""
 
     def draw(rng):
         wavelength = float(rng.uniform(230e-9, 1690e-9))
-        with mp.workdps(60):
-            s = (mp.mpf(10) ** -6 / mp.mpf(wavelength)) ** 2
-            n = 1 + (5792105 / (mp.mpf("238.0185") - s) + 167917 / (mp.mpf("57.362") - s)) / 10**8
-            nitrogen = mp.mpf("1.034") + mp.mpf("3.17e-4") * s
-            oxygen = mp.mpf("1.096") + mp.mpf("1.385e-3") * s + mp.mpf("1.448e-4") * s**2
-            parts = [("78.084", nitrogen), ("20.946", oxygen), ("0.934", mp.mpf(1)), ("0.036", mp.mpf("1.15"))]
-            king = sum(mp.mpf(a) * b for a, b in parts) / sum(mp.mpf(a) for a, _ in parts)
-            number_density = 101325 / (mp.mpf("1.380649e-23") * mp.mpf("288.15"))
-            truth = (
-                24 * mp.pi**3 * ((n**2 - 1) / (n**2 + 2)) ** 2 / (mp.mpf(wavelength) ** 4 * number_density**2) * king
-            )
-            if column:
-                truth *= 101325 * mp.mpf("6.02214076e23") / (mp.mpf("28.9647e-3") * mp.mpf("9.80665"))
         function = analytic.air_optical_depth if column else analytic.air_cross_section
-        return lambda: function(wavelength), truth, 0, f"{wavelength}"
+        return lambda: function(wavelength), air_truth(wavelength, column), 0, f"{wavelength}"
 
     return draw
 

@@ -5,8 +5,10 @@ What is compared shares the albedo, the thickness and the cosine and nothing tha
 
 from __future__ import annotations
 
+import flint
 import mpmath as mp
 import numpy as np
+from doubling_truth import doubled_truth
 from transport_truth import disort, slab_truth
 
 from fogproof import analytic
@@ -77,6 +79,21 @@ def by_disort(which):
             abs(fine - coarse) + 1e-11,
             f"{c} {tau} {mu0} {phase}",
         )
+
+    return draw
+
+
+def in_bits(which):
+    """Layers of Henyey-Greenstein scattering, any thickness, nearly conservative: added in 340 bits at two sets of nodes."""
+
+    def draw(rng):
+        c, tau, mu0 = 1 - number(rng, 1e-9, 1), number(rng, 1e-3, 1e3), number(rng, 0.05, 1)
+        g = float(rng.uniform(-0.3, 0.3))
+        coarse, fine = (
+            doubled_truth(c, tau, mu0, lambda degree: flint.arb(g) ** degree, n=n, moments=n)[which] for n in (20, 28)
+        )
+        phase = HenyeyGreenstein(g)
+        return lambda: DIRECTIONAL[which](c, tau, mu0, phase), mp.mpf(fine), abs(fine - coarse), f"{c} {tau} {mu0} {g}"
 
     return draw
 
@@ -206,6 +223,7 @@ NAMES = ("slab_reflectance", "slab_transmittance", "slab_emissivity")
 KINDS = {
     **{f"{name}/doubling": Kind(by_doubling(i), 0.3) for i, name in enumerate(NAMES)},
     **{f"{name}/digits": Kind(by_digits(i), 0.01) for i, name in enumerate(NAMES[:2])},
+    **{f"{name}/bits": Kind(in_bits(i), 0.01) for i, name in enumerate(NAMES[:2])},
     **{f"{name}/disort": Kind(by_disort(i), 0.1) for i, name in enumerate(NAMES[:2])},
     **{f"{name}/walks": Kind(by_walks(i), 0.1) for i, name in enumerate(NAMES)},
     **{f"{name}/refracted": Kind(refracted(i), 1) for i, name in enumerate(NAMES)},

@@ -1,12 +1,14 @@
 """`check_bound`: does a majorant lie above its function everywhere, and is it attained somewhere?
 
-The largest quotient f / bound is looked for: at corners and evenly spread points first, then around the best of them in ever
-smaller neighbourhoods. A place where f exceeds its bound is a proof; that none was found is none, so it is said how near f came.
+The largest quotient f / bound is looked for: at corners, evenly spread and independent uniform points first, then around the best
+of them in ever smaller neighbourhoods. A place where f exceeds its bound is a proof; that none was found is none. So it is said how
+near f came, and how much of the domain may be wrong: m independent points miss a share s of it with probability (1 - s)^m.
 """
 
 from __future__ import annotations
 
 import itertools
+import math
 import time
 from collections.abc import Callable
 from typing import Any
@@ -15,9 +17,10 @@ import numpy as np
 
 from fogproof.checks.arguments import samples_of, seed_of
 from fogproof.checks.diagnosis import likely_cause
+from fogproof.checks.statistics.goodness import MISS
 from fogproof.checks.streams import batch_generator
 from fogproof.checks.subject import UNIT_ROUNDOFF, Precision, call, numbers
-from fogproof.checks.verdict import Finding, Outcome, Verdict
+from fogproof.checks.verdict import Finding, Outcome, Resolution, Verdict
 from fogproof.domains import Domain
 from fogproof.errors import InvalidValueError, shorten
 from fogproof.validate import number
@@ -80,12 +83,17 @@ def check_bound(
         return np.where(known, ratio, np.inf), value, x
 
     rng = batch_generator(seed, "bound", 0, 0)
-    best, value, place, used = _search(quotient, len(law.axes), evaluations, rng, 1 + slack)
+    best, value, place, used, independent = _search(quotient, len(law.axes), evaluations, rng, 1 + slack)
     over = not best <= 1 + slack
     at = shorten(place)
     outcome: Outcome = "rejected" if over else "not rejected"
     above = f"f = {value:.9g} is {best:.9g} times its bound at {at}" if over else f"f <= bound at {used} points"
-    findings = [Finding("above everywhere", outcome, above, effect=best - 1, cause="wrong bound" if over else "")]
+    part = "part of the domain where f exceeds its bound"
+    resolution = None if over else Resolution(part, -math.expm1(math.log(MISS) / independent), MISS)
+    cause = "wrong bound" if over else ""
+    findings = [
+        Finding("above everywhere", outcome, above, effect=best - 1, resolution=resolution, cause=cause),
+    ]
     if not over:
         near = best >= attained
         message = f"f reaches {best:.4g} of its bound, at {at}"
@@ -107,9 +115,13 @@ def _search(
     evaluations: int,
     rng: np.random.Generator,
     enough: float,
-) -> tuple[float, float, Any, int]:
-    """Return the largest quotient found, f there, the point, and how many were evaluated; the end is where it exceeds `enough`."""
-    spread = _evenly(evaluations // 2, k, rng)
+) -> tuple[float, float, Any, int, int]:
+    """Return the largest quotient found, f there, the point, how many were evaluated, and how many of those were independent.
+
+    The end is where the quotient exceeds `enough`.
+    """
+    independent = evaluations // 4
+    spread = np.concatenate([_evenly(evaluations // 2 - independent, k, rng), rng.random((independent, k))])
     if k <= _CORNERS:
         corners = np.array(list(itertools.product((0.0, 0.5, np.nextafter(1.0, 0.0)), repeat=min(k, 6))))
         spread = np.concatenate([np.pad(corners, ((0, 0), (0, k - corners.shape[1]))), spread])
@@ -137,7 +149,7 @@ def _search(
         centres = np.where(better[:, None], trial[np.arange(len(centres)), choice], centres)
         tops = np.maximum(tops, ratio.max(axis=1))
         reach *= _SHRINK
-    return (*best, used)
+    return (*best, used, independent)
 
 
 def _evenly(n: int, k: int, rng: np.random.Generator) -> np.ndarray:

@@ -16,6 +16,8 @@ from fogproof.errors import SubjectError
 DECADES = (1, 9, 90, 900, 9000)
 """Realisations of the first calls where there are many batches: an estimator must not depend on how many it is asked for."""
 
+_ALIKE = 8  # calls of the same size, at most
+_LARGE = 2000  # realisations of one of them, at least
 _KEPT = 1 << 23  # numbers kept, so that nobody has to be asked twice
 
 
@@ -130,12 +132,17 @@ def as_array(what: str, value: Any) -> np.ndarray:
 def calls_of(n: int, batches: int) -> list[int]:
     """Return the sizes of the calls of the first batch.
 
-    Where there are many, the first ones ask for 1, 9, 90, ... realisations. Somebody who wants few realisations pays for each call:
-    then there are two of them, or one.
+    Where there are many, the first ones ask for 1, 9, 90, ... realisations. Whether realisations of one call know each other shows
+    between calls: where there is enough for it, there are up to eight about as large. Somebody who wants few realisations pays
+    for each call: then there are two of them, or one.
     """
     if batches == 1 or n < BATCH:
-        return [n] if n < 1000 else [n // 4, n - n // 4]
-    return [*DECADES, n - sum(DECADES)]
+        return [n] if n < 1000 else [n // 4, n - n // 4] if n < 3 * _LARGE else _evenly(n, min(n // _LARGE, _ALIKE))
+    return [*DECADES, *_evenly(n - sum(DECADES), _ALIKE)]
+
+
+def _evenly(n: int, parts: int) -> list[int]:
+    return [n // parts + (i < n % parts) for i in range(parts)]
 
 
 def _joined(parts: list[Draws]) -> Draws:

@@ -40,6 +40,7 @@ class _Search:
     make: Callable[[Any], Any]
     options: Mapping[str, Any]
     seed: int
+    budget: int
     left: int
     tried: dict[str, tuple[Any, Verdict]] = field(default_factory=dict)
     simplest: tuple[Any, Verdict] | None = None
@@ -97,7 +98,7 @@ def check_family(
     number("alpha", alpha, "must lie in (0, 1)", 0, 1, open_ends=True)
     members, samples = (int(number(n, v, "must be >= 1", 1)) for n, v in (("members", members), ("samples", samples)))
     started = time.perf_counter()
-    search = _Search(make, options, fresh_seed() if seed is None else seed, samples)
+    search = _Search(make, options, fresh_seed() if seed is None else seed, samples, samples)
     if isinstance(parameters, Iterable):
         listed = list(parameters)
         if not listed:
@@ -241,7 +242,8 @@ def _verdict(search: _Search, alpha: float, seconds: float) -> Verdict:
         parameter, found = search.simplest
         wrong = sum(verdict.outcome == "rejected" for _, verdict in tried)
         message = f"wrong at {parameter!r}, the simplest of {wrong} rejected{_where(tried)}"
-        family = Finding("family", "rejected", message, found.p_value, alpha, cause=found.cause)
+        p = min((f.p_value for f in found.findings if f.outcome == "rejected" and f.p_value is not None), default=None)
+        family = Finding("family", "rejected", message, p, alpha, cause=found.cause)
         return replace(
             found,
             findings=(family, *found.findings),
@@ -251,12 +253,12 @@ def _verdict(search: _Search, alpha: float, seconds: float) -> Verdict:
             seconds=seconds,
             settings={**found.settings, "parameter": repr(parameter)},
         )
-    unsure = [parameter for parameter, verdict in tried if verdict.outcome == "inconclusive"]
+    unsure = [(parameter, verdict) for parameter, verdict in tried if verdict.outcome == "inconclusive"]
     least = min(verdict.samples for _, verdict in tried)
     most = max(verdict.samples for _, verdict in tried)
     message = f"{len(tried)} parameters, {least} samples each, {most} where doubt was greatest"
     if unsure:
-        message += f"; no decision at {len(unsure)} of them, such as {unsure[0]!r}"
+        message += f"; no decision at {len(unsure)} of them. {_why(*unsure[0], search.budget)}"
     worst = max(
         (verdict.resolution for _, verdict in tried if verdict.resolution is not None),
         key=lambda r: r.value,
@@ -265,6 +267,15 @@ def _verdict(search: _Search, alpha: float, seconds: float) -> Verdict:
     outcome: Outcome = "inconclusive" if unsure else "not rejected"
     finding = Finding("family", outcome, message, alpha=alpha, resolution=worst)
     return Verdict((finding,), alpha, drawn, search.seed, seconds)
+
+
+def _why(parameter: Any, verdict: Verdict, budget: int) -> str:
+    """Return what one member lacks for a decision, in its own words, and how much of the search it has to get."""
+    reason = next(f.message for f in verdict.findings if f.outcome == "inconclusive")
+    share = (
+        f"it got 1 / {budget / verdict.samples:.3g} of samples={budget}; with more, each member gets as many times more"
+    )
+    return f"At {parameter!r}, with {verdict.samples}: {reason}. {share[0].upper()}{share[1:]}"
 
 
 def _where(tried: list[tuple[Any, Verdict]]) -> str:

@@ -13,7 +13,13 @@ from fogproof.checks.observed import Observed
 from fogproof.checks.quantities import CheckedQuantity
 from fogproof.checks.statistics.bets import Bets
 from fogproof.checks.statistics.coverage import coverage_test
-from fogproof.checks.statistics.dependence import repeated_stretches, repeats_within_calls, runs_test, spread_of_calls
+from fogproof.checks.statistics.dependence import (
+    evenness_of_calls,
+    repeated_stretches,
+    repeats_within_calls,
+    runs_test,
+    spread_of_calls,
+)
 from fogproof.checks.statistics.goodness import MISS
 from fogproof.checks.statistics.heavy import TailEstimate
 from fogproof.checks.statistics.known import Known
@@ -76,7 +82,10 @@ def judged(seen: Observed, again: Again, samples: int, alpha: float, complete: b
         findings.append(finding)
         findings += claim.outside()
     if covered:
-        findings.append(coverage_test("coverage of standard errors", seen.coverage, seen.moments[0], share))
+        (off,) = (
+            row for q, row in zip(seen.quantities, seen.moments, strict=True) if q.cause == "wrong standard errors"
+        )
+        findings.append(coverage_test("coverage of standard errors", seen.coverage, seen.moments[0], off, share))
     findings += _orders(seen)
     if not fixed and seen.n > 1:
         findings += dependence(seen, _DEPENDENCE * alpha)
@@ -209,7 +218,7 @@ class _Claim:
             )
         if finding.outcome == "inconclusive" and known.variance is not None and complete and p > DOUBT:
             message = f"{start}; rare values matter, so tested by Catoni's function and the exact variance"
-            resolution = Resolution(f"bias of {finding.check}", bets.detectable(MISS) + self.error, MISS)
+            resolution = Resolution(f"bias of {finding.check}", bets.detectable(MISS) + self.error, MISS, self.value)
             return replace(
                 finding, outcome="not rejected", message=message, p_value=p, alpha=alpha, resolution=resolution
             )
@@ -239,12 +248,13 @@ def dependence(seen: Observed, alpha: float) -> list[Finding]:
     """Return what is found of the independence of realisations."""
     if all(data.deviation <= _NOISE * abs(data.mean) for data in seen.moments[0]):
         return []  # what varies is rounding
-    third = alpha / 3
+    share = alpha / 4
     found = [
-        runs_test("correlation of realisations", seen.succession, third),
+        runs_test("correlation of realisations", seen.succession, share),
         repeated_stretches("repeated realisations", seen.succession),
-        repeats_within_calls("realisations that occur twice", seen.succession, third),
-        spread_of_calls("scatter of calls", seen.succession, seen.moments[0], third) if seen.labels is None else None,
+        repeats_within_calls("realisations that occur twice", seen.succession, share),
+        spread_of_calls("scatter of calls", seen.succession, seen.moments[0], share) if seen.labels is None else None,
+        evenness_of_calls("evenness of calls", seen.succession, share) if seen.labels is None else None,
     ]
     return [finding for finding in found if finding is not None]
 

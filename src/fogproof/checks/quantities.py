@@ -82,6 +82,7 @@ def quantities_of(
     more = []
     if declared.variance is not None:
         v, v_error = _exact("variance", declared.variance, len(value))
+        v_error = v_error + _rounding_of_variance(v, value, declared.roundoff)
         known = [declared.known(float(one)) for one in v + v_error]
         if math.isfinite(high - low):
             most = np.maximum(high - value + error, 0.0) * np.maximum(value + error - low, 0.0)
@@ -91,7 +92,7 @@ def quantities_of(
             )
             require("variance", v, possible, rule, f"that is {float(most.min()):.6g}")
         # (X - r)^2 has expectation V + (mean - r)^2, and |mean - r| <= error.
-        v_error = v_error + error**2 + (8 * declared.roundoff * v if declared.roundoff > 2.0**-53 else 0.0)
+        v_error = v_error + error**2
         largest = np.maximum((high - value) ** 2, (value - low) ** 2)
         squares = tuple(Known(low=0.0, high=float(one), light=declared.light) for one in largest)
         more.append(
@@ -111,6 +112,16 @@ def quantities_of(
             )
         )
     return [CheckedQuantity("mean", lambda d: d.value, value, error, "bias", tuple(known)), *more, *cost]
+
+
+def _rounding_of_variance(v: np.ndarray, value: np.ndarray, roundoff: float) -> np.ndarray:
+    """Return by how much the variance changes if every realisation is rounded, and computed with a few roundings more.
+
+    Rounding moves a realisation by at most roundoff |X|, by Minkowski's inequality the deviation by no more than the root of the
+    mean square of that.
+    """
+    size = np.sqrt(v + value * value) * roundoff
+    return np.asarray(2 * np.sqrt(v) * size + size * size + 8 * roundoff * v)
 
 
 def _order(label: int, reference: Reference | float, declared: Declared) -> CheckedQuantity:

@@ -33,16 +33,26 @@ class InconclusiveError(FogproofError, AssertionError):
 
 @dataclass(frozen=True)
 class Resolution:
-    """The smallest error of a named kind that a check would have caught, missing it with probability <= `miss`."""
+    """The smallest error of a named kind that a check would have caught, missing it with probability <= `miss`.
+
+    of  the value that it is an error of; None for what is relative by itself, as probabilities are
+    """
 
     kind: str
     value: float
     miss: float = 0.01
+    of: float | None = None
+
+    @property
+    def relative(self) -> float | None:
+        """The error as a share of what it is an error of, where that is known and not 0."""
+        return self.value if self.of is None else self.value / abs(self.of) if self.of else None
 
     def __str__(self) -> str:
         sure = f" with probability {1 - self.miss:g}" if self.miss else ""
         article = "an" if self.kind[0] in "aeiou" else "a"
-        return f"{article} {self.kind} above {self.value:.2g} would have been caught{sure}"
+        share = f" ({self.relative:.2g} of it)" if self.of and self.relative is not None else ""
+        return f"{article} {self.kind} above {self.value:.2g}{share} would have been caught{sure}"
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import errno
 import importlib
+import io
 import os
 import sys
 import traceback
@@ -70,10 +71,11 @@ def main(arguments: list[str] | None = None) -> Any:
     except FogproofError as error:
         code = _say(error, _BAD_INPUT)
     except click.ClickException as error:
-        error.show()
-        code = _BAD_INPUT
+        words = io.StringIO()
+        error.show(words)
+        code = _say(words.getvalue().rstrip("\n"), _BAD_INPUT, "")
     except (click.Abort, KeyboardInterrupt) as stop:
-        code = _say("stopped", code_of(stop))
+        code = _say("stopped", code_of(stop.__cause__ or stop))  # click makes an Abort of the signal's exception
     except BrokenPipeError:
         code = _nobody_reads()
     except OSError as error:
@@ -94,9 +96,9 @@ def main(arguments: list[str] | None = None) -> Any:
 _BAD_INPUT, _FAULT, _UNREAD = 2, 70, 141
 
 
-def _say(message: object, code: int) -> int:
+def _say(message: object, code: int, who: str = "fogproof: ") -> int:
     with contextlib.suppress(OSError):
-        say(f"fogproof: {message}", err=True)
+        say(f"{who}{message}", err=True)
     return code
 
 

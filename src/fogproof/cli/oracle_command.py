@@ -7,16 +7,24 @@ import json
 import math
 import sys
 from collections.abc import Callable
+from pathlib import Path
 
 import click
 
+from fogproof.cli.terminal import say
 from fogproof.errors import InvalidInputError
 from fogproof.oracle import Limits, schema, serve
 from fogproof.quantities import quantities
 
 
 @click.command("oracle")
-@click.argument("request", metavar="REQUEST.json|-", required=False)
+@click.argument("request", metavar="REQUEST.json|-|SCENE.toml", required=False)
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path, dir_okay=False),
+    help="Write the image of SCENE.toml here: .exr, .npy or .pfm.",
+)
 @click.option("--list", "as_list", is_flag=True, help="List the quantities with units, conventions and arguments.")
 @click.option("--schema", "as_schema", is_flag=True, help="Print the JSON Schema of requests and answers instead.")
 @click.option(
@@ -27,6 +35,7 @@ from fogproof.quantities import quantities
 @click.option("--max-bytes", default=Limits.bytes, show_default=True, help="Length of a request, at most.")
 def command(
     request: str | None,
+    output: Path | None,
     as_list: bool,
     as_schema: bool,
     rigorous: bool,
@@ -38,6 +47,8 @@ def command(
 
     REQUEST.json holds one JSON object, or one a line; '-' reads lines from stdin and answers each at once. A line
     that cannot be answered gets an error with a code, and costs no other line its answer.
+
+    SCENE.toml is a scene with a camera; -o writes its image, the mean radiance of each pixel, with its error as a layer.
 
     \b
     Example:  echo '{"quantity": "phase_pdf", "phase": {"kind": "rayleigh"}, "mu": [-1, 0, 1]}' | fogproof oracle -
@@ -51,9 +62,31 @@ def command(
         return 0
     if request is None:
         raise click.UsageError("give a REQUEST.json, '-' for lines on stdin, --list or --schema")
+    if output is not None:
+        return _image(request, output)
     limits = Limits(values=max_values, seconds=timeout or math.inf, bytes=max_bytes)
     read = _stdin() if request == "-" else _file(request)
     return 0 if serve(read, sys.stdout.buffer, rigorous, limits) else 2
+
+
+def _image(scene_file: str, output: Path) -> int:
+    """Write the image of a scene."""
+    from fogproof.analytic import image
+    from fogproof.images.formats import format_of, layers
+    from fogproof.scene.files import read_image_scene
+
+    format_ = format_of(output)
+    found = image(read_image_scene(scene_file))
+    channels = layers(found.value)
+    if output.suffix.lower() == ".exr":
+        channels |= {f"error.{name}": off for name, off in layers(found.error).items()}
+    format_.write(output, channels)
+    rows, columns = found.value.shape[:2]
+    say(
+        f"{output}: {columns} x {rows} pixels, mean {found.value.mean():.9g}, largest error {found.error.max():.2g}",
+        err=True,
+    )
+    return 0
 
 
 def _stdin() -> Callable[[int], bytes]:

@@ -12,7 +12,7 @@ import click
 
 from fogproof.cli.signals import code_of, stoppable
 from fogproof.cli.terminal import say
-from fogproof.text import one_line
+from fogproof.text import duration, one_line
 
 
 @click.command("study")
@@ -47,11 +47,12 @@ def command(
 ) -> int:
     """Measure speed against error, and judge bias and variance by the oracle.
 
-    Results go into DIR batch by batch; started again, the study goes on where it was.
+    Results go into DIR batch by batch, and their page is DIR/index.html; started again, the study goes on where it was.
 
     \b
     Example:  fogproof study studies/lecture.toml -o runs/lecture
     """
+    from fogproof.reports import read_record, write_report
     from fogproof.study import read_study, run_study
 
     called = shlex.join(["fogproof", *sys.argv[1:]])
@@ -68,56 +69,91 @@ def command(
         say(json.dumps(record))
     else:
         _print_rows(record)
-    _explain(record, folder)
+    _explain(record)
+    page = write_report(read_record(folder), folder, keep=True)
+    say(f"\npage: {page}; seed {record['seed']}", err=True)
     history = record["history"]
     return 1 if history and history["worse"] else record["exit_code"]
 
 
 def _print_rows(record: dict[str, Any]) -> None:
+    counts, became = record["settings"]["samples"], record["settings"]["sobol_samples"]
+    if became and list(became) != list(counts):
+        asked, made = (", ".join(map(str, numbers)) for numbers in (counts, became))
+        say(f"Sobol points are balanced in powers of two alone: for {asked} there are {made} of them.\n")
     for scene in record["scenes"]:
         reference = scene["reference"]
         unit = "" if scene["unit"] == "1" else f" {scene['unit']}"
         say(f"{one_line(scene['name'])}: {scene['quantity']}, reference {reference['value']:.9g}{unit}")
-        width = max(len(e["name"]) for e in scene["estimators"])
-        head = ("outcome", "bias", "slope", "time each", "relative", "to 1 %", "0.1 %", "0.01 %")
-        say(f"  {'estimator':{width}}  " + "  ".join(f"{word:>12}" for word in head))
-        for estimator in scene["estimators"]:
-            cells = "  ".join(f"{word:>12}" for word in _cells(estimator))
-            say(f"  {estimator['name']:{width}}  {cells}")
+        place = {name: k for k, name in enumerate([*scene["answer"]["ranking"], *scene["answer"]["out"]])}
+        errors: list[dict[str, Any]] = next(
+            (e["speed"]["targets"] for e in scene["estimators"] if e["speed"] and e["speed"]["targets"]), []
+        )
+        rows = [_cells(e, len(errors)) for e in sorted(scene["estimators"], key=lambda e: place[e["name"]])]
+        head = ["estimator", "unbiased", "bias", "order", *(f"to {100 * t['error']:g} %" for t in errors), "speed"]
+        widths = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
+        for row in (head, *rows):
+            first, *rest = (
+                word.ljust(w) if k < 2 else word.rjust(w) for k, (word, w) in enumerate(zip(row, widths, strict=True))
+            )
+            say("  " + "  ".join([first, *rest]).rstrip())
+        say("")
+    if record["scenes"]:
+        say(
+            "to 1 %: time of an estimate with a relative root mean square error, bias included, of 1 %; < where the first count is"
+        )
+        say(
+            "better already, > where the last is not enough, ~ beyond the last count. speed: of that time, the soonest being 1."
+        )
 
 
-def _cells(estimator: dict[str, Any]) -> list[str]:
-    speed = estimator["speed"]
-    status = estimator["status"] if estimator["status"] != "known" else "biased"
-    if speed is None:
-        return [status] + [""] * 7
-    slope = estimator["slope"]["value"] if estimator["slope"] else None
-    march = estimator["march"]
-    if march and march["order"]:
-        slope = -march["order"]["value"]
-    targets = ["never" if t["seconds"] is None else f"{t['seconds']:.2g} s" for t in speed["targets"]]
-    relative = speed["relative"]
-    ratio = "" if relative is None else "exact" if relative["value"] == "inf" else f"{relative['value']:.3g}"
-    bias = f"{estimator['bias']['value']:+.1e}"
-    return [status, bias, "" if slope is None else f"{slope:.2f}", f"{speed['cpu']['value']:.2e} s", ratio, *targets]
+_UNBIASED = {"passed": "yes", "known": "no, as declared", "rejected": "NO", "inconclusive": "not sure"}
 
 
-def _explain(record: dict[str, Any], folder: Path) -> None:
+def _cells(estimator: dict[str, Any], targets: int) -> list[str]:
+    speed, order = estimator["speed"], estimator["order"]
+    unbiased = (
+        "exact"
+        if estimator["status"] == "passed" and estimator["axis"] != "samples"
+        else _UNBIASED[estimator["status"]]
+    )
+    bias = f"{estimator['bias']['value']:+.1e}" if estimator["bias"] else ""
+    times = [_time(target) for target in speed["targets"]] if speed else []
+    relative = f"{speed['relative']['value']:.3g}" if speed and speed["relative"] else ""
+    words = [one_line(estimator["name"]), unbiased, bias, f"{order['value']:.2f}" if order else ""]
+    return [*words, *(times or [""] * targets), relative]
+
+
+def _time(target: dict[str, Any]) -> str:
+    if target["how"] == "never":
+        return "never"
+    if target["seconds"] is None:
+        return f"> {duration(target['low'])}"
+    return {"less-than": "< ", "extrapolated": "~ "}.get(target["how"], "") + duration(target["seconds"])
+
+
+def _explain(record: dict[str, Any]) -> None:
+    """Say on stderr what was found, in the study's order, and nothing twice."""
+    asked = ""
     for answer in record["answers"]:
-        say(f"\n{answer['question']}\n  {answer['scene']}: {answer['text']}", err=True)
+        if answer["question"] != asked:
+            say(f"\n{one_line(answer['question'])}", err=True)
+        asked = answer["question"]
+        say(f"  {one_line(answer['scene'])}: {answer['text']}", err=True)
     for scene in record["scenes"]:
         for estimator in scene["estimators"]:
-            bad = [f for f in estimator["findings"] if f["outcome"] != "not rejected"]
-            for finding in bad if estimator["status"] != "known" else ():
-                place = one_line(f"{scene['name']} / {estimator['name']}")
-                say(f"\n{place}: {finding['outcome']}, {finding['check']}: {finding['message']}", err=True)
-            if estimator["warning"]:
-                say(f"\n{scene['name']} / {estimator['name']}: {estimator['warning']}", err=True)
+            place = one_line(f"{scene['name']} / {estimator['name']}")
+            for finding in estimator["findings"] if estimator["status"] == "rejected" else ():
+                if finding["outcome"] == "rejected":
+                    say(f"\n{place}: rejected, {finding['check']}: {finding['message']}", err=True)
+            if estimator["warning"] and estimator["points"] == "random":
+                say(f"\n{place}: {estimator['warning']}", err=True)
     for failure in record["failures"]:
         place = f"batch {failure['batch']} of {failure['scene']} / {failure['estimator']}"
         say(f"\n{place} failed {failure['attempts']} times: {failure['error']}", err=True)
+    if record["advice"]:
+        say(f"\n{record['advice']}", err=True)
     if record["mixed"]:
         say("\nbatches of different versions or machines are mixed in this run, see 'sessions'", err=True)
     if record["history"]:
         say(f"\nagainst the earlier run: {record['history']['text']}", err=True)
-    say(f"\nresults: {folder / 'results.json'}; seed {record['seed']}", err=True)

@@ -1,11 +1,14 @@
 """Scenes as plain frozen data that validate themselves. No formula lives here."""
 
+from fogproof.scene import cameras as _cameras
 from fogproof.scene import lights as _lights
 from fogproof.scene import media as _media
 from fogproof.scene import occluders as _occluders
 from fogproof.scene import phase as _phase
 from fogproof.scene import shapes as _shapes
 from fogproof.scene import surfaces as _surfaces
+from fogproof.scene.cameras import *  # noqa: F403
+from fogproof.scene.image_scenes import ImageScene
 from fogproof.scene.lights import *  # noqa: F403
 from fogproof.scene.media import *  # noqa: F403
 from fogproof.scene.occluders import *  # noqa: F403
@@ -15,7 +18,8 @@ from fogproof.scene.scenes import Scattering, Scene
 from fogproof.scene.shapes import *  # noqa: F403
 from fogproof.scene.surfaces import *  # noqa: F403
 
-__all__ = ["Ray", "Scattering", "Scene"]
+__all__ = ["ImageScene", "Ray", "Scattering", "Scene"]
+__all__ += _cameras.__all__
 __all__ += _lights.__all__
 __all__ += _media.__all__
 __all__ += _occluders.__all__

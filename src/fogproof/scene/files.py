@@ -14,18 +14,38 @@ from typing import Any
 
 from fogproof.errors import InvalidInputError, InvalidValueError, shorten
 from fogproof.input_files import read_text
+from fogproof.scene.image_scenes import ImageScene
 from fogproof.scene.scenes import Scene
 
 
 def read_scene(path: str | Path) -> Scene:
     """Read a scene from a TOML file. Every fault is a `FogproofError` that names the file and the key."""
-    path = Path(path)
+    return read_fields({"scene": Scene}, {"scene": _table(Path(path))}, str(path))["scene"]
+
+
+def read_image_scene(path: str | Path) -> ImageScene:
+    """Read a scene with a camera from a TOML or JSON file. Every fault is a `FogproofError` that names the file and the key."""
+    table = _table(Path(path))
+    if "camera" not in table:
+        fix = "add a [camera] table: kind, origin, target, film = { width, height }"
+        raise InvalidInputError(f"{path}: camera is missing; {fix}", "camera")
+    return read_fields({"scene": ImageScene}, {"scene": table}, str(path))["scene"]
+
+
+def _table(path: Path) -> dict[str, Any]:
     text = read_text(path, "the scene file")
+    if path.suffix == ".json":
+        try:
+            table = json.loads(text)
+        except (json.JSONDecodeError, RecursionError) as error:
+            raise InvalidInputError(f"{path} is not valid JSON: {error}", str(path)) from None
+        if not isinstance(table, dict):
+            raise InvalidInputError(f"{path}: must be a table of keys, got {shorten(table)}", str(path))
+        return table
     try:
-        table = tomllib.loads(text)
+        return tomllib.loads(text)
     except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise InvalidInputError(f"{path} is not valid TOML: {error}", str(path)) from None
-    return read_fields({"scene": Scene}, {"scene": table}, str(path))["scene"]
 
 
 def read_fields(types: dict[str, Any], data: Any, origin: str) -> dict[str, Any]:

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeVar
 
+from fogproof.scene.image_scenes import ImageScene
 from fogproof.scene.lights import strength, with_strength
 from fogproof.scene.media import medium_of_channel
 from fogproof.scene.scenes import Scene
 
+AnyScene = TypeVar("AnyScene", Scene, ImageScene)
 
-def one_channel(scene: Scene, c: int) -> Scene:
+
+def one_channel(scene: AnyScene, c: int) -> AnyScene:
     """Return the grey scene that channel c sees."""
     return replace(
         scene,

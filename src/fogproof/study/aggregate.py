@@ -33,8 +33,10 @@ class Level:
     squares     (columns,) moments of (X - reference)^2
     tail        the largest |X - reference|, all of them down to the smallest one here
     cost        mean look-ups of a realisation, NaN where they are not counted
-    cpu, wall   (batches,) seconds a realisation
-    cpu_total   [s] of all batches
+    seconds     (rounds,) processor time of one whole estimate, the fixed cost of its calls included; NaN where none was drawn
+    wall        [s] a realisation, the median over the batches
+    batches     how many there are
+    cpu_total   [s] of all of them
     """
 
     count: int
@@ -43,8 +45,9 @@ class Level:
     squares: np.ndarray
     tail: np.ndarray
     cost: float
-    cpu: np.ndarray
-    wall: np.ndarray
+    seconds: np.ndarray
+    wall: float
+    batches: int
     cpu_total: float
 
     @property
@@ -75,6 +78,7 @@ class _Handful:
     rows          (.., columns) the moments of replicates or parts of them, and `replicate` which
     squares       (columns,) moments of (X - reference)^2
     realisations, costs, cpu, wall  (batches,)
+    round         (batches,) that they were drawn in
     tail          the largest |X - reference| down to `least`, the largest of the batches' smallest
     tails_known   whether every batch that keeps a tail has one
     """
@@ -86,6 +90,7 @@ class _Handful:
     costs: np.ndarray
     cpu: np.ndarray
     wall: np.ndarray
+    round: np.ndarray
     tail: np.ndarray
     least: float
     tails_known: bool
@@ -98,9 +103,9 @@ def _level(own: Iterator[Row], stretch: BatchStretch) -> Level:
         parts.append(_handful(group, stretch))
     starts = np.flatnonzero(np.diff(np.concatenate([part.replicate for part in parts]), prepend=-1))
     squares = merged(np.stack([part.squares for part in parts]), np.array([0]))[0]
-    n, costs, cpu, wall = (
-        np.concatenate([getattr(part, name) for part in parts]) for name in ("realisations", "costs", "cpu", "wall")
-    )
+    names = ("realisations", "costs", "cpu", "wall", "round")
+    n, costs, cpu, wall, rounds = (np.concatenate([getattr(p, name) for p in parts]) for name in names)
+    took, drawn = (np.bincount(rounds, weights, stretch.rounds) for weights in (cpu, n))
     known, least = all(part.tails_known for part in parts), max(part.least for part in parts)
     tail = np.sort(np.concatenate([part.tail for part in parts]))
     rows = np.concatenate([part.rows for part in parts])
@@ -114,8 +119,9 @@ def _level(own: Iterator[Row], stretch: BatchStretch) -> Level:
         squares,
         tail[np.searchsorted(tail, least) :][-_TAIL_KEPT:] if known else np.empty(0),
         float(np.sum(costs * n) / n.sum()),
-        cpu / n,
-        wall / n,
+        np.divide(stretch.realisations * took, drawn, out=np.full(stretch.rounds, np.nan), where=drawn > 0),
+        float(np.median(wall / n)),
+        len(n),
         float(cpu.sum()),
     )
 
@@ -145,6 +151,7 @@ def _handful(group: list[Row], stretch: BatchStretch) -> _Handful:
         np.array([np.nan if row[3] is None else row[3] for row in group]),
         np.array([row[5] for row in group]),
         np.array([row[4] for row in group]),
+        stretch.round_of(np.array([row[0] for row in group])),
         largest,
         least,
         bool(np.all(lengths[realisations >= TAIL_SHARE] > 0)) and len(starts) > 0,
@@ -162,11 +169,12 @@ def merged(rows: np.ndarray, starts: np.ndarray) -> np.ndarray:
     mean = np.add.reduceat(n_i * rows[:, _MEAN], starts) / np.maximum(n, 1)
     mean = np.where(n > 0, np.clip(mean, low, high), 0.0)
     d = np.where(n_i > 0, rows[:, _MEAN] - np.repeat(mean, lengths), 0.0)
-    d2 = d * d
-    m2 = rows[:, _M2] + n_i * d2
-    m3 = rows[:, _M3] + 3 * d * rows[:, _M2] + n_i * d2 * d
-    m4 = rows[:, _M4] + 4 * d * rows[:, _M3] + 6 * d2 * rows[:, _M2] + n_i * d2 * d2
-    sums = [np.add.reduceat(m, starts) for m in (m2, m3, m4)]
+    with np.errstate(over="ignore", invalid="ignore"):  # `judgement.out_of_range` refuses such numbers by name
+        d2 = d * d
+        m2 = rows[:, _M2] + n_i * d2
+        m3 = rows[:, _M3] + 3 * d * rows[:, _M2] + n_i * d2 * d
+        m4 = rows[:, _M4] + 4 * d * rows[:, _M3] + 6 * d2 * rows[:, _M2] + n_i * d2 * d2
+        sums = [np.add.reduceat(m, starts) for m in (m2, m3, m4)]
     at_low = np.add.reduceat(np.where(rows[:, _LOW] == np.repeat(low, lengths), rows[:, _AT_LOW], 0.0), starts)
     at_high = np.add.reduceat(np.where(rows[:, _HIGH] == np.repeat(high, lengths), rows[:, _AT_HIGH], 0.0), starts)
     bad = np.add.reduceat(rows[:, _BAD], starts)

@@ -9,9 +9,9 @@ from typing import cast
 import numpy as np
 
 from fogproof.checks import batch_generator
-from fogproof.contracts import Draws
+from fogproof.contracts import Draws, Estimator
 from fogproof.errors import SubjectError
-from fogproof.study.cells import MARCHES, SOBOL_CALL, Cell, cells_of_text
+from fogproof.study.cells import SOBOL_CALL, Cell, cells_of_text
 from fogproof.study.plan import Batch
 from fogproof.study.sobol import SobolSequence
 
@@ -55,14 +55,11 @@ def draw_batch(cell: Cell, batch: Batch, reference: float) -> BatchResult:
     wall, cpu = time.perf_counter(), time.thread_time()
     if cell.points == "sobol":
         x, cost = _with_sobol_points(cell, estimator, batch)
-    elif cell.method.axis == "steps":
-        rng = np.random.default_rng(0)
-        draws = [_numbers(estimator.draw(rng, 1), 1) for _ in range(MARCHES)]
-        x, cost = np.concatenate([values for values, _ in draws]), draws[0][1]
     else:
         rng = batch_generator(cell.study.seed, f"{cell.stream}/{batch.size}", batch.first, batch.start)
-        n = batch.replicates * batch.samples
-        x, cost = _numbers(estimator.draw(rng, n), n)
+        # A call for each replicate, as a program makes it that wants one estimate: its fixed cost belongs to the estimate's time.
+        draws = [_numbers(estimator.draw(rng, batch.samples), batch.samples) for _ in range(batch.replicates)]
+        x, cost = np.concatenate([values for values, _ in draws]), float(np.mean([cost for _, cost in draws]))
     cpu, wall = time.thread_time() - cpu, time.perf_counter() - wall
     x = x.reshape(batch.replicates, batch.samples)
     with np.errstate(over="ignore", invalid="ignore"):
@@ -131,7 +128,7 @@ def _numbers(result: object, n: int) -> tuple[np.ndarray, float]:
     return x.reshape(n), cost
 
 
-def _with_sobol_points(cell: Cell, estimator: object, batch: Batch) -> tuple[np.ndarray, float]:
+def _with_sobol_points(cell: Cell, estimator: Estimator, batch: Batch) -> tuple[np.ndarray, float]:
     """Draw each replicate with a scrambling of its own; a batch inside a replicate goes on in its sequence."""
     dimensions = cell.method.dimensions
     assert dimensions is not None
@@ -142,7 +139,7 @@ def _with_sobol_points(cell: Cell, estimator: object, batch: Batch) -> tuple[np.
         sequence = SobolSequence(dimensions, scrambling, behind, batch.start)
         for start in range(0, batch.samples, SOBOL_CALL):
             n = min(SOBOL_CALL, batch.samples - start)
-            x, cost = _numbers(estimator.draw(sequence.points(n), n), n)  # type: ignore[attr-defined]
+            x, cost = _numbers(estimator.draw(sequence.points(n), n), n)  # type: ignore[arg-type]
             values.append(x)
             costs.append(cost)
     return np.concatenate(values), float(np.mean(costs))

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 import threading
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -20,8 +22,10 @@ _BUILDING = threading.RLock()
 """Large modules are loaded by the first estimator that needs them, which two threads at a time may not do."""
 EXACT_CALLS = 1024
 """Realisations of an exact estimator: it needs one, but its time is measured."""
-MARCHES = 4
+MARCHES = 8
 """Realisations of each march: they are alike, but their time is measured."""
+_MARCH_FACTOR = 2.5
+"""Marches are made at more counts than the study's: neighbours differ by this factor at most, so that their order can be seen."""
 SOBOL_CALL = 1 << 14
 """Sobol points an estimator is given at once: it works in blocks, and must see all of a block's points together."""
 
@@ -54,6 +58,8 @@ class Cell:
             return (1,)
         if self.points == "sobol":
             return tuple(sorted({1 << max(0, round(float(np.log2(n)))) for n in self.study.samples}))
+        if self.method.axis == "steps":
+            return _denser(self.study.samples)
         return self.study.samples
 
     @property
@@ -81,6 +87,15 @@ class Cell:
                     SobolSequence(1, np.random.default_rng(0), np.random.default_rng(0))  # loads scipy.stats
                 self._made[count] = estimator
             return self._made[count]
+
+
+def _denser(counts: tuple[int, ...]) -> tuple[int, ...]:
+    """Return the counts with more of them between, so that neighbours differ by `_MARCH_FACTOR` at most."""
+    found = [counts[0]]
+    for before, after in pairwise(counts):
+        pieces = math.ceil(math.log(after / before) / math.log(_MARCH_FACTOR))
+        found += [round(before * (after / before) ** (k / pieces)) for k in range(1, pieces)] + [after]
+    return tuple(sorted(set(found)))
 
 
 def cells_of(study: Study) -> list[Cell]:

@@ -55,7 +55,7 @@ def run_study(
                 store.begin(started, json.dumps(environment(), sort_keys=True))
                 slots = pool.slots
                 try:
-                    draw_missing(study, cells, batches, store, pool, progress.advance)
+                    draw_missing(study, cells, batches.in_turn(), store, pool, progress.advance)
                 except KeyboardInterrupt as stop:
                     stopped = stop
         run = Circumstances(command, started, time.perf_counter() - clock, executor, slots, stopped is not None)

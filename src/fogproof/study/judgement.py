@@ -1,7 +1,4 @@
-"""Is an estimator right? Its mean, variance and scatter against the oracle, inside one false-alarm probability for the study.
-
-What is rejected here is out of every ranking.
-"""
+"""Is an estimator right? Its mean, variance and scatter against the oracle, inside one false-alarm probability for the study."""
 
 from __future__ import annotations
 
@@ -13,8 +10,9 @@ import numpy as np
 
 from fogproof.checks import Finding
 from fogproof.checks.statistics.heavy import TailEstimate
+from fogproof.checks.statistics.known import NOTHING, Known
 from fogproof.checks.statistics.means import mean_test
-from fogproof.checks.statistics.moments import Moments
+from fogproof.checks.statistics.moments import ORDINARY, Moments
 from fogproof.checks.statistics.tails import gamma_above, normal_quantile, student_two_sided
 from fogproof.checks.verdict import Outcome
 from fogproof.contracts import Reference
@@ -32,14 +30,22 @@ _SUSPICIOUS = 0.05
 
 @dataclass(frozen=True)
 class Judged:
-    """What became of a cell; `warning` is about heavy tails, "" if there is none.
+    """What became of a cell.
 
-    The outcome is that of all findings, but for a variance that could not be tested: squares are more skewed than what is squared.
+    outcome  that of all findings, but for a variance that could not be tested: squares are more skewed than what is squared
+    warning  about heavy tails, "" if there is none
+    wants    how many times as many realisations would decide about the mean, as far as can be foreseen; 1 if nothing is open
     """
 
     outcome: Outcome
     findings: tuple[Finding, ...]
     warning: str
+    wants: float = 1.0
+
+    @property
+    def infinite(self) -> bool:
+        """Whether the variance may be infinite: then no error that was measured says anything of the next."""
+        return "infinite" in self.warning
 
 
 def tests_of(cell: Cell) -> int:
@@ -49,32 +55,64 @@ def tests_of(cell: Cell) -> int:
     return 1 if cell.points == "sobol" else 3
 
 
+def out_of_range(cell: Cell, levels: Sequence[Level]) -> bool:
+    """Return whether deviations are so large or small that binary64 does not hold their powers, which statistics needs."""
+    if cell.method.axis != "samples" or not levels:
+        return False
+    rows = np.concatenate([level.rows for level in levels])
+    rows = rows[rows[:, 0] > 0]
+    ends = np.array([*rows[:, 5], *rows[:, 6], float(cell.reference.value)])
+    spread = float(ends.max() / 2 - ends.min() / 2) * 2
+    return not (spread == 0 or 1 / ORDINARY < spread < ORDINARY) or float(np.abs(ends).max()) > ORDINARY
+
+
 def judge(cell: Cell, levels: Sequence[Level], variance: Reference | None, alpha: float) -> Judged:
     """Judge what was drawn of a cell; every test has the false-alarm probability alpha."""
     value, error = float(cell.reference.value), float(cell.reference.error)
     bad = sum(level.bad for level in levels)
     findings: list[Finding] = []
-    warning = ""
+    warning, wants = "", 1.0
     if bad:
         findings.append(Finding("finite values", "rejected", f"{bad} realisations are not finite", cause="bias"))
     elif not any(len(level.rows) for level in levels):
         findings.append(Finding("mean", "inconclusive", "nothing has been drawn"))
+    elif out_of_range(cell, levels):
+        rule = f"differ by less than {1 / ORDINARY:.1g}, or reach {ORDINARY:.1g}: their powers leave binary64; choose other units"
+        findings.append(Finding("range", "inconclusive", f"realisations about {value:.3g} {rule}"))
     elif cell.method.axis != "samples":
         findings.append(_exact(cell, levels, value, error))
     elif cell.points == "sobol":
         findings.append(_scrambled(levels[-1], value, resolution_of(value, error), alpha))
     else:
         data = pooled(np.concatenate([level.rows for level in levels]))
-        findings.append(mean_test("mean", "mean", data, value, error, alpha))
+        findings.append(mean_test("mean", "mean", data, value, error, alpha, known=_known(cell, variance)))
         findings += _against_theory(levels, variance, alpha)
         warning = _heavy(levels, data, value)
         if warning and variance is None and "infinite" in warning:
             findings[0] = replace(findings[0], outcome="inconclusive", message=f"{findings[0].message}; {warning}")
+        elif findings[0].outcome == "inconclusive":
+            wants = _wanted(data, alpha)
     if not all(level.complete for level in levels) or len(levels) < len(cell.counts):
         findings.append(Finding("completeness", "inconclusive", "batches are missing"))
     outcomes = [f.outcome for f in findings if f.outcome == "rejected" or f.check != "variance"]
     outcome: Outcome = next((o for o in ("rejected", "inconclusive") if o in outcomes), "not rejected")
-    return Judged(outcome, tuple(findings), warning)
+    return Judged(outcome, tuple(findings), warning, wants)
+
+
+def _known(cell: Cell, variance: Reference | None) -> Known:
+    """Return what is known of the law where the values have bounds: then a mean is judged however skewed they are."""
+    bounds = cell.method.bounds(cell.scene)
+    if bounds is None:
+        return NOTHING
+    known = variance is not None and np.isfinite(variance.value)
+    most = float(variance.value) + float(variance.error) if variance is not None and known else None
+    return Known(variance=most, low=float(bounds[0]), high=float(bounds[1]))
+
+
+def _wanted(data: Moments, alpha: float) -> float:
+    """Return how many times as many realisations make the correction for skewness small enough; it falls with their root."""
+    exponent = abs(data.skewness) / (3 * math.sqrt(max(data.n, 1))) * normal_quantile(alpha / 2) ** 3
+    return max(4.0, exponent**2)
 
 
 def _scrambled(level: Level, value: float, error: float, alpha: float) -> Finding:
@@ -104,7 +142,7 @@ def inherited(judged: Judged, twin: Judged) -> Judged:
     if twin.outcome == "not rejected" or judged.outcome == "rejected":
         return judged
     finding = Finding("random points", twin.outcome, f"with random points the estimator is {twin.outcome}")
-    return Judged(twin.outcome, (*judged.findings, finding), judged.warning)
+    return Judged(twin.outcome, (*judged.findings, finding), judged.warning, twin.wants)
 
 
 def resolution_of(value: float, error: float, terms: int = 1) -> float:
@@ -158,7 +196,7 @@ def _scatter(level: Level, variance: float, alpha: float) -> Finding:
 
 def excess(data: Moments) -> float:
     """Return the excess kurtosis, 0 where nothing varies."""
-    return data.n * data.m4 / data.m2**2 - 3 if data.m2 > 0 else 0.0
+    return data.n * (data.m4 / data.m2) / data.m2 - 3 if data.m2 > 0 else 0.0
 
 
 def _heavy(levels: Sequence[Level], data: Moments, value: float) -> str:

@@ -13,19 +13,23 @@ from fogproof.checks.statistics.moments import Moments
 from fogproof.contracts import Reference
 from fogproof.study.aggregate import Level, pooled
 from fogproof.study.cells import Cell
-from fogproof.study.convergence import Estimate, Falling, Z, falling, rmse, slope
-from fogproof.study.judgement import Judged, excess, inherited, judge, resolution_of
+from fogproof.study.convergence import Estimate, Floor, Order, Z, floor_of, order_of, rmse
+from fogproof.study.judgement import Judged, excess, inherited, judge, out_of_range, resolution_of
 from fogproof.study.methods.table import kind_of, options_of
-from fogproof.study.speed import Efficiency, spread_of, targets_of, time_of
+from fogproof.study.reaching import TARGETS, ErrorOverTime, Reach, reach_of, variance_law
+from fogproof.study.speed import Times, times_of
+
+_NO_LAW = 0.001
+"""Measured errors so improbable under sqrt(variance / count) are taken as they are: realisations in a call depend on each other."""
 
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """A cell, judged and measured; `efficiency` is None if it was rejected, or nothing is known of its time."""
+    """A cell, judged and measured; `reaches` has the time to each of `TARGETS`, () where there is no curve to read it off."""
 
     cell: Cell
     judged: Judged
-    efficiency: Efficiency | None
+    reaches: tuple[Reach, ...]
     record: dict[str, Any]
 
     @property
@@ -36,6 +40,11 @@ class Measured:
             return "known" if self.cell.method.expected == "rejected" else "rejected"
         return "passed" if outcome == "not rejected" else "inconclusive"
 
+    @property
+    def unbiased(self) -> bool:
+        """Whether it came out unbiased as far as could be seen."""
+        return self.judged.outcome == "not rejected"
+
 
 def measure(cell: Cell, levels: Sequence[Level], alpha: float, twin: Measured | None = None) -> Measured:
     """Measure a cell; every test has the false-alarm probability alpha. The twin of Sobol points are random ones."""
@@ -43,17 +52,15 @@ def measure(cell: Cell, levels: Sequence[Level], alpha: float, twin: Measured | 
     variance = cell.method.variance(cell.scene)
     judged = judge(cell, levels, variance, alpha)
     judged = judged if twin is None else inherited(judged, twin.judged)
+    levels = [] if out_of_range(cell, levels) else levels  # what cannot be summed cannot be measured
     value, error = float(cell.reference.value), float(cell.reference.error)
-    rejected = judged.outcome == "rejected"
     data = pooled(np.concatenate([level.rows for level in levels])) if levels else Moments()
-    curve = [_rmse(cell, level, data, error) for level in levels]
-    fall = None
-    if cell.method.axis == "steps" and levels:
-        offs = np.array([level.rows[0, 1] - value for level in levels])
-        limits = np.array([resolution_of(value, error, level.count) for level in levels])
-        fall = falling(np.array([level.count for level in levels]), offs, limits)
+    errors, times = [_rmse(cell, level, data, error) for level in levels], times_of(levels)
+    order, floor = _fall(cell, levels, errors, data, value, error)
     bias = _bias(cell, levels, data, error)
-    efficiency = None if rejected or not levels else _efficiency(levels, data, variance, curve, cell)
+    stays = _stays(judged, bias, floor)
+    curve = _curve(cell, levels, errors, times, data, variance, judged, stays)
+    reaches = () if curve is None else _reaches(curve, abs(value), error)
     record = {
         "name": cell.name,
         "kind": kind_of(cell.method),
@@ -66,17 +73,18 @@ def measure(cell: Cell, levels: Sequence[Level], alpha: float, twin: Measured | 
         "reason": cell.method.bias,
         "outcome": judged.outcome,
         "warning": judged.warning,
+        "wants": judged.wants,
         "findings": judged.findings,
         "moments": _moments(data),
         "bias": None if bias is None else asdict(bias),
         "variance": _variance(cell, data, variance),
-        "slope": _slope(cell, levels, curve, data),
-        "march": None if fall is None else _fall(fall),
+        "order": None if order is None else {**asdict(order), "expected": _expected_order(cell)},
+        "floor": None if floor is None else asdict(floor),
         "cost": levels[-1].cost if levels and not math.isnan(levels[-1].cost) else None,
-        "counts": [_count(cell, level, c, variance) for level, c in zip(levels, curve, strict=True)],
-        "speed": _speed(cell, levels, data, variance, bias if rejected else None, curve) if levels else None,
+        "counts": [_count(cell, level, e, variance) for level, e in zip(levels, errors, strict=True)],
+        "speed": _speed(cell, levels, times, reaches) if levels else None,
     }
-    measured = Measured(cell, judged, efficiency, record)
+    measured = Measured(cell, judged, reaches, record)
     record["status"] = measured.status
     return measured
 
@@ -86,14 +94,7 @@ def _label(cell: Cell) -> str:
     alike = [method for method in cell.scene.estimators if method.title == cell.method.title]
     options = ", ".join(f"{key} {value}" for key, value in options_of(cell.method).items())
     label = f"{cell.method.title} ({options})" if len(alike) > 1 and options else cell.method.title
-    return f"{label}, Sobol points" if cell.points == "sobol" else label
-
-
-def _time(cell: Cell, level: Level) -> dict[str, float]:
-    """Return the time of a realisation at one count, and of a whole estimate with so many samples, or steps."""
-    each = time_of(level)
-    whole = each.value * (level.count if cell.method.axis == "samples" else 1)
-    return {"count": level.count, **asdict(each), "seconds": whole}
+    return f"{label} with Sobol points" if cell.points == "sobol" else label
 
 
 def _moments(data: Moments) -> dict[str, Any]:
@@ -106,8 +107,34 @@ def _rmse(cell: Cell, level: Level, data: Moments, error: float) -> Estimate:
     if cell.method.axis != "samples":
         size = float(np.abs(errors).max())
         return Estimate(size, max(size - error, 0.0), size + error)
-    spread = 0.0 if cell.points == "sobol" else excess(data) / level.count
-    return rmse(errors, spread, error)
+    return rmse(errors, _kurtosis(cell, data) / level.count, error)
+
+
+def _kurtosis(cell: Cell, data: Moments) -> float:
+    return 0.0 if cell.points == "sobol" else excess(data)
+
+
+def _freedom(cell: Cell, level: Level, data: Moments) -> float:
+    """Return the degrees of freedom of a level's mean square."""
+    return len(level.rows) / (1 + max(_kurtosis(cell, data) / level.count, 0.0) / 2)
+
+
+def _fall(
+    cell: Cell, levels: Sequence[Level], errors: Sequence[Estimate], data: Moments, value: float, error: float
+) -> tuple[Order | None, Floor | None]:
+    """Return the order with which the error falls, and how near a march comes."""
+    if not levels or cell.method.axis == "nothing":
+        return None, None
+    counts = np.array([level.count for level in levels])
+    size = np.array([e.value for e in errors])
+    steps = cell.method.axis == "steps"
+    hidden = np.array([resolution_of(value, error, level.count if steps else 1) for level in levels])
+    freedom = np.array([math.inf if steps else _freedom(cell, level, data) for level in levels])
+    return order_of(counts, size, freedom, hidden), floor_of(counts, size, hidden) if steps else None
+
+
+def _expected_order(cell: Cell) -> float | None:
+    return 0.5 if cell.method.axis == "samples" and cell.points == "random" else None
 
 
 def _bias(cell: Cell, levels: Sequence[Level], data: Moments, error: float) -> Estimate | None:
@@ -125,7 +152,7 @@ def _bias(cell: Cell, levels: Sequence[Level], data: Moments, error: float) -> E
 def _variance(cell: Cell, data: Moments, variance: Reference | None) -> dict[str, Any] | None:
     if cell.points == "sobol" or data.n < 2:
         return None
-    reach = Z * math.sqrt(max(excess(data) + 2, 0.0) / data.n)
+    reach = Z * _spread(data)
     measured = data.variance
     return {
         "measured": measured,
@@ -137,77 +164,103 @@ def _variance(cell: Cell, data: Moments, variance: Reference | None) -> dict[str
     }
 
 
-def _slope(
-    cell: Cell, levels: Sequence[Level], curve: Sequence[Estimate], data: Moments
-) -> dict[str, float | None] | None:
-    if cell.method.axis != "samples":
-        return None
-    counts = np.array([level.count for level in levels])
-    spread = 0.0 if cell.points == "sobol" else excess(data)
-    freedom = np.array([len(level.rows) / (1 + max(spread / level.count, 0.0) / 2) for level in levels])
-    found = slope(counts, np.array([c.value for c in curve]), freedom)
-    expected = None if cell.points == "sobol" else -0.5
-    return None if found is None else {**asdict(found), "expected": expected}
+def _spread(data: Moments) -> float:
+    """Return the standard error of the logarithm of the variance."""
+    return math.sqrt(max(excess(data) + 2, 0.0) / max(data.n, 1))
 
 
-def _fall(fall: Falling) -> dict[str, Any]:
-    order = None if fall.order is None else asdict(fall.order)
-    return {"order": order, "floor": fall.floor, "at": fall.at, "reached": fall.reached}
-
-
-def _count(cell: Cell, level: Level, curve: Estimate, variance: Reference | None) -> dict[str, Any]:
+def _count(cell: Cell, level: Level, error: Estimate, variance: Reference | None) -> dict[str, Any]:
     predicted = None
     if cell.points == "random" and cell.method.axis == "samples" and variance is not None:
         predicted = math.sqrt(max(float(variance.value), 0.0) / level.count)
-    means = level.rows[:, 1]
     return {
         "count": level.count,
         "replicates": len(level.rows),
-        "mean": float(means.mean()),
-        "rmse": curve.value,
-        "rmse_low": curve.low,
-        "rmse_high": curve.high,
+        "mean": float(level.rows[:, 1].mean()),
+        "rmse": error.value,
+        "rmse_low": error.low,
+        "rmse_high": error.high,
         "predicted": predicted,
     }
 
 
-def _efficiency(
-    levels: Sequence[Level], data: Moments, variance: Reference | None, curve: Sequence[Estimate], cell: Cell
-) -> Efficiency:
-    """Return 1 / (mean squared error x time) of the last count; with random samples that does not depend on the count."""
-    time = time_of(levels[-1])
-    if cell.method.axis != "samples":
-        return Efficiency(math.inf, spread_of(time))
-    if cell.points == "sobol":
-        size = curve[-1]
-        per = size.value**2 * levels[-1].count * time.value
-        spread = 2 * math.log(size.high / size.low) / (2 * Z) if size.low > 0 else 1.0
-        return Efficiency(1 / per if per > 0 else math.inf, math.hypot(spread, spread_of(time)))
-    square, spread = data.variance, math.sqrt(max(excess(data) + 2, 0.0) / data.n)
-    if variance is not None and np.isfinite(variance.value) and float(variance.error) < 1e-6 * float(variance.value):
-        square, spread = float(variance.value), 0.0
-    per = square * time.value
-    return Efficiency(1 / per if per > 0 else math.inf, math.hypot(spread, spread_of(time)))
-
-
-def _speed(
+def _curve(
     cell: Cell,
     levels: Sequence[Level],
+    errors: Sequence[Estimate],
+    times: Sequence[Times],
     data: Moments,
     variance: Reference | None,
-    bias: Estimate | None,
-    curve: Sequence[Estimate],
-) -> dict[str, Any]:
-    """Return what depends on the machine; efficiency and rank are added once the scene's best is known."""
-    exact = variance is not None and np.isfinite(variance.value)
-    square = float(variance.value) if exact and variance is not None else data.variance
-    off = 0.0 if bias is None else bias.value
-    time, wall = time_of(levels[-1]), float(np.median(levels[-1].wall))
+    judged: Judged,
+    stays: float,
+) -> ErrorOverTime | None:
+    """Return the error against time; None where nothing was drawn, or not every realisation is a number."""
+    if not levels or any(level.bad for level in levels):
+        return None
+    counts = np.array([level.count for level in levels])
+    law = None
+    if (
+        cell.method.axis == "samples"
+        and cell.points == "random"
+        and judged.outcome != "rejected"
+        and not judged.infinite
+    ):
+        exact = variance is not None and 0 <= float(variance.error) < 1e-6 * float(variance.value) < math.inf
+        law = variance_law(
+            float(variance.value) if exact and variance is not None else data.variance, _spread(data), exact
+        )
+        law = law if data.m2 > 0 and _follows(law.value, cell, levels, errors, data) else None
+    return ErrorOverTime(counts, errors, times, law, stays)
+
+
+def _stays(judged: Judged, bias: Estimate | None, floor: Floor | None) -> float:
+    """Return the error that is there for good: a march's floor where it has met it, or the least bias a rejected one can have."""
+    if floor is not None:
+        return floor.error if floor.reached else 0.0
+    if judged.outcome != "rejected" or bias is None or not bias.low * bias.high > 0:
+        return 0.0
+    return min(abs(bias.low), abs(bias.high))
+
+
+def _follows(variance: float, cell: Cell, levels: Sequence[Level], errors: Sequence[Estimate], data: Moments) -> bool:
+    """Return whether the errors that were measured are those of independent realisations with this variance."""
+    from scipy.special import chdtr, chdtrc
+
+    freedom = np.array([_freedom(cell, level, data) for level in levels])
+    squares = np.array([e.value**2 * level.count / variance for e, level in zip(errors, levels, strict=True)])
+    statistic, total = float(np.sum(freedom * squares)), float(np.sum(freedom))
+    return 2 * min(float(chdtr(total, statistic)), float(chdtrc(total, statistic))) >= _NO_LAW
+
+
+def _reaches(curve: ErrorOverTime, value: float, hidden: float) -> tuple[Reach, ...]:
+    """Return the times to `TARGETS`; () if the reference is 0 or known too coarsely."""
+    if not value > 0 or hidden > 0.1 * TARGETS[-1] * value:
+        return ()
+    return tuple(reach_of(curve, error * value, error, hidden) for error in TARGETS)
+
+
+def _speed(cell: Cell, levels: Sequence[Level], times: Sequence[Times], reaches: Sequence[Reach]) -> dict[str, Any]:
+    """Return what depends on the machine; rank and relative speed are added once the scene's soonest is known."""
+    last = levels[-1]
+    each = last.count if cell.method.axis == "samples" else 1
+    whole = times[-1].estimate
     return {
-        "cpu": asdict(time),
-        "wall": wall,
-        "batches": len(levels[-1].cpu),
+        "cpu": {"value": whole.value / each, "low": whole.low / each, "high": whole.high / each},
+        "wall": last.wall,
+        "batches": last.batches,
         "cpu_total": sum(level.cpu_total for level in levels),
-        "counts": [_time(cell, level) for level in levels],
-        "targets": [asdict(target) for target in targets_of(cell, levels, square, off, [c.value for c in curve])],
+        "counts": [_timing(level, time.estimate) for level, time in zip(levels, times, strict=True)],
+        "targets": [_target(reach) for reach in reaches],
     }
+
+
+def _timing(level: Level, time: Estimate) -> dict[str, float]:
+    return {"count": level.count, "seconds": time.value, "low": time.low, "high": time.high}
+
+
+def _target(reach: Reach) -> dict[str, Any]:
+    time = reach.seconds
+    told = {"error": reach.error, "how": reach.how, "why": reach.why, "samples": reach.samples}
+    if not reach.reached:
+        return {**told, "seconds": None, "low": time.value, "high": None}
+    return {**told, "seconds": time.value, "low": time.low, "high": time.high}

@@ -6,6 +6,7 @@ is large. All batches follow from the study alone, and are not listed but counte
 
 from __future__ import annotations
 
+import heapq
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -14,6 +15,11 @@ from typing import NamedTuple
 import numpy as np
 
 from fogproof.study.cells import Cell
+
+TOGETHER = 2
+"""Most replicates that a batch holds: cells take turns batch by batch, so that they meet the machine in the same moods."""
+ROUNDS = 8
+"""Turns that times are told apart by, with as many batches each: their scatter says how sure a time is."""
 
 
 class Batch(NamedTuple):
@@ -72,6 +78,15 @@ class BatchStretch:
     def __len__(self) -> int:
         return self.replicates * self.parts if self.parts > 1 else -(-self.replicates // self.together)
 
+    @property
+    def rounds(self) -> int:
+        """Rounds its batches are drawn in."""
+        return min(ROUNDS, len(self))
+
+    def round_of(self, numbers: np.ndarray) -> np.ndarray:
+        """Return the rounds that the batches of these numbers belong to."""
+        return (numbers - self.begin) * self.rounds // len(self)
+
     def pieces(self, numbers: np.ndarray) -> BatchPieces:
         """Return what the batches of these numbers hold."""
         k = numbers - self.begin
@@ -92,6 +107,17 @@ class Batches(Sequence[Batch]):
     def __len__(self) -> int:
         return self.stretches[-1].begin + len(self.stretches[-1])
 
+    def in_turn(self) -> Iterator[Batch]:
+        """Yield all batches in the order they are to be drawn in: every cell and count moves on together, small counts ahead.
+
+        A study that ends early knows as much of one as of another, and a machine that slows down slows all of them.
+        """
+        yield from heapq.merge(*map(_numbered, self.stretches), key=self._turn)
+
+    def _turn(self, batch: Batch) -> tuple[float, int, int]:
+        stretch = self.stretches[self.stretch(batch.number)]
+        return (batch.number - stretch.begin + 0.5) / len(stretch), batch.level, batch.cell
+
     def stretch(self, number: int) -> int:
         """Return the index of the stretch that a batch belongs to."""
         return bisect_right(self.stretches, number, key=lambda s: s.begin) - 1
@@ -103,9 +129,13 @@ class Batches(Sequence[Batch]):
 
     def __iter__(self) -> Iterator[Batch]:
         for stretch in self.stretches:
-            end = stretch.begin + len(stretch)
-            for begin in range(stretch.begin, end, 10_000):
-                yield from _each(stretch, np.arange(begin, min(begin + 10_000, end)))
+            yield from _numbered(stretch)
+
+
+def _numbered(stretch: BatchStretch) -> Iterator[Batch]:
+    end = stretch.begin + len(stretch)
+    for begin in range(stretch.begin, end, 10_000):
+        yield from _each(stretch, np.arange(begin, min(begin + 10_000, end)))
 
 
 def _each(stretch: BatchStretch, numbers: np.ndarray) -> Iterator[Batch]:
@@ -114,7 +144,7 @@ def _each(stretch: BatchStretch, numbers: np.ndarray) -> Iterator[Batch]:
 
 
 def batches_of(cells: Sequence[Cell]) -> Batches:
-    """Return all batches, small counts first: an unfinished study knows something of every cell."""
+    """Return all batches, small counts first."""
     stretches: list[BatchStretch] = []
     begin = 0
     for level in range(max(len(cell.counts) for cell in cells)):
@@ -128,9 +158,10 @@ def batches_of(cells: Sequence[Cell]) -> Batches:
 def _stretch(begin: int, level: int, cell: Cell) -> BatchStretch:
     count, replicates = cell.counts[level], cell.replicates
     if cell.method.axis != "samples":
-        return BatchStretch(begin, cell.index, level, count, 1, replicates, replicates, 1, 1)
+        return BatchStretch(begin, cell.index, level, count, 1, replicates, replicates // ROUNDS, 1, 1)
     most = cell.study.batch
     if cell.points == "sobol":
         most = 1 << (most.bit_length() - 1)  # a power of two: a stretch of Sobol points is balanced only then
     parts = -(-count // most)
-    return BatchStretch(begin, cell.index, level, count, count, replicates, max(1, most // count), parts, most)
+    together = max(1, min(most // count, TOGETHER))
+    return BatchStretch(begin, cell.index, level, count, count, replicates, together, parts, most)

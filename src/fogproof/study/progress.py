@@ -76,6 +76,5 @@ class Progress:
         """Return a batch's work in realisations, or steps, with what the calls and the scrambling of points cost beside them."""
         cell = self._cells[batch.cell]
         each = batch.size if cell.method.axis == "steps" else batch.samples
-        calls = batch.replicates if cell.method.axis == "steps" else 1
         scrambled = batch.replicates if cell.points == "sobol" else 0
-        return float(each * batch.replicates + _CALL * calls + _SCRAMBLING * scrambled)
+        return float(each * batch.replicates + _CALL * batch.replicates + _SCRAMBLING * scrambled)

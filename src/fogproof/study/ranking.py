@@ -1,130 +1,184 @@
-"""Which estimator is best in a scene, in words too. Whoever is rejected is out; whoever is in doubt cannot win."""
+"""Who reaches a given error soonest in a scene, in words too. Bias is part of the error; whether there is any is told beside it."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import asdict
+from itertools import groupby
 from typing import Any
 
 from fogproof.study.measures import Measured
+from fogproof.study.reaching import TARGETS, Reach
+from fogproof.text import duration
+
+_AT = 0
+"""Ranks, and ratios of times, are those to the first of `TARGETS`."""
+_SHOWN = 3
 
 
 def ranked(scene: Sequence[Measured]) -> dict[str, Any]:
-    """Return the ranking of a scene's estimators with random points, the best, and a sentence; writes relative efficiencies.
+    """Return the ranking of a scene's estimators, the soonest, and some sentences; writes ranks and relative speeds.
 
-    Exact estimators come first, the fastest ahead; then random ones by efficiency; then those whose judgement is inconclusive.
-    Sobol points are compared with random ones of the same estimator.
+    Those that do not reach the first target within their counts follow, the nearest first; last those without a curve.
     """
-    plain = [m for m in scene if m.cell.points == "random" and m.efficiency is not None]
-    sure = [m for m in plain if m.judged.outcome == "not rejected"]
-    order = sorted(sure, key=_key) + sorted((m for m in plain if m not in sure), key=_key)
-    exact = [m for m in sure if _is_exact(m)]
-    random = [m for m in sorted(sure, key=_key) if not _is_exact(m)]
-    best = order[0] if sure else None
-    best_random = random[0] if random else None
-    for measured in scene:
-        _compare(measured, scene, order, best_random or best)
+    order = sorted((m for m in scene if m.reaches), key=_key)
+    reaching = [m for m in order if _reaches(m, _AT)]
+    unbiased = [m for m in reaching if m.unbiased]
+    first = reaching[0] if reaching else None
+    for m in scene:
+        speed = m.record["speed"]
+        if speed is not None:
+            relative = None if first is None or not m.reaches else first.reaches[_AT].relative_to(m.reaches[_AT])
+            speed["rank"] = order.index(m) + 1 if m in reaching else None
+            speed["relative"] = None if relative is None else asdict(relative)
     return {
-        "best": None if best is None else best.cell.name,
-        "best_random": None if best_random is None else best_random.cell.name,
+        "best": None if first is None else first.cell.name,
+        "best_unbiased": unbiased[0].cell.name if unbiased else None,
         "ranking": [m.cell.name for m in order],
-        "out": [m.cell.name for m in scene if m.efficiency is None],
-        "text": _sentences(scene, order, exact, random),
+        "out": [m.cell.name for m in scene if not m.reaches],
+        "text": " ".join(_sentences(scene)),
     }
 
 
-def _is_exact(m: Measured) -> bool:
-    return m.efficiency is not None and math.isinf(m.efficiency.value)
+def _reaches(m: Measured, target: int) -> bool:
+    return bool(m.reaches) and m.reaches[target].reached
 
 
-def _key(m: Measured) -> tuple[float, float]:
-    assert m.efficiency is not None
-    return (-m.efficiency.value, m.record["speed"]["cpu"]["value"])
+def _key(m: Measured) -> tuple[int, float]:
+    if _reaches(m, _AT):
+        return 0, m.reaches[_AT].times.estimate.value
+    return 1, m.record["counts"][-1]["rmse"]
 
 
-def _compare(m: Measured, scene: Sequence[Measured], order: list[Measured], best: Measured | None) -> None:
-    speed = m.record["speed"]
-    if speed is None:
-        return
-    speed["efficiency"], speed["relative"], speed["rank"], speed["gain"] = None, None, None, None
-    if m.efficiency is None:
-        return
-    speed["efficiency"] = m.efficiency.value
-    if best is not None and best.efficiency is not None:
-        speed["relative"] = asdict(m.efficiency.relative_to(best.efficiency))
-    if m in order:
-        speed["rank"] = order.index(m) + 1
-    if m.cell.points == "sobol":
-        twin = next(o for o in scene if o.cell.method is m.cell.method and o.cell.points == "random")
-        if twin.efficiency is not None:
-            speed["gain"] = asdict(m.efficiency.relative_to(twin.efficiency))
-
-
-def _sentences(scene: Sequence[Measured], order: list[Measured], exact: list[Measured], random: list[Measured]) -> str:
-    said = []
-    if exact:
-        first = exact[0]
-        time = first.record["speed"]["cpu"]["value"]
-        said.append(f"{first.record['label']} is best: it is exact, at {_seconds(time)} an estimate.")
-    if random:
-        first = random[0]
-        target = first.record["speed"]["targets"][0]
-        lead = "Of those that are random, " if exact else ""
-        cost = "" if target["seconds"] is None else f": an error of 1 % takes {_seconds(target['seconds'])}"
-        name = _inside(first.record["label"]) if exact else first.record["label"]
-        said.append(f"{lead}{name} is best{cost}.")
-        others = [_times(other, first) for other in random[1:4]]
-        if others:
-            said.append(f"It is {_listed(others)}.")
-        sobol = next((m for m in scene if m.cell.points == "sobol" and m.cell.method is first.cell.method), None)
-        gain = sobol.record["speed"]["gain"] if sobol is not None and sobol.record["speed"] else None
-        if sobol is not None and gain and sobol.judged.outcome == "not rejected":
-            count = sobol.record["counts"][-1]["count"]
-            smaller = first.record["counts"][-1]["rmse"] / max(sobol.record["counts"][-1]["rmse"], 1e-300)
-            smaller *= math.sqrt(first.record["counts"][-1]["count"] / count)
-            said.append(f"{count} Sobol points in the place of random ones make its error {smaller:.2g} times smaller.")
-    if not exact and not random:
-        said.append("No estimator can be called best: none was found to be right.")
-    said += [_marched(m) for m in scene if m.record["march"]]
-    doubtful = [_inside(m.record["label"]) for m in order if m.judged.outcome == "inconclusive"]
-    if doubtful:
-        said.append(f"Not judged, and so not ranked among the sure: {_listed(doubtful)}.")
-    wrong = [_inside(m.record["label"]) for m in scene if m.status == "rejected"]
+def _sentences(scene: Sequence[Measured]) -> list[str]:
+    if not any(m.reaches for m in scene):
+        zero = all(float(m.cell.reference.value) == 0 for m in scene)
+        return [
+            "The reference is 0: no error is relative to it."
+            if zero
+            else "Nothing has been measured that could be compared."
+        ]
+    said = _soonest(scene, "")
+    firsts = [m for m in _firsts(scene) if m is not None]
+    if not firsts:
+        nearest = min((m for m in scene if m.reaches), key=_key)
+        last = nearest.record["counts"][-1]
+        said = [
+            f"None comes within {TARGETS[_AT]:.0%}; {_inside(nearest)} comes nearest with {last['count']}. Raise `samples`."
+        ]
+    biased = list(dict.fromkeys(m for m in firsts if not m.unbiased))
+    if biased:
+        said += [f"{m.record['label']} {_why_not_unbiased(m)}." for m in biased]
+        said += _soonest([m for m in scene if m.unbiased], "Of the unbiased, ")
+    said += _compared(scene)
+    said += [_marched(m) for m in scene if m.cell.method.axis == "steps" and m.record["counts"]]
+    open_ = [_inside(m) for m in scene if m.status == "inconclusive" and m.cell.points == "random"]
+    if open_:
+        said.append(f"Not judged unbiased yet: {_listed(open_)}.")
+    wrong = [_inside(m) for m in scene if m.status == "rejected"]
     if wrong:
         said.append(f"Rejected: {_listed(wrong)}.")
-    return " ".join(said)
+    return said
 
 
-def _times(other: Measured, first: Measured) -> str:
-    assert other.efficiency is not None
-    assert first.efficiency is not None
-    ratio = first.efficiency.relative_to(other.efficiency)
-    sure = "" if ratio.low > 1 else ", which is within noise"
-    return f"{ratio.value:.3g} times as efficient as {_inside(other.record['label'])}{sure}"
+def _firsts(scene: Sequence[Measured]) -> list[Measured | None]:
+    """Return who is soonest to each of `TARGETS`."""
+    found: list[Measured | None] = []
+    for target in range(len(TARGETS)):
+        there = [m for m in scene if _reaches(m, target)]
+        found.append(min(there, key=lambda m: m.reaches[target].times.estimate.value, default=None))
+    return found
+
+
+def _soonest(scene: Sequence[Measured], lead: str) -> list[str]:
+    """Return who is soonest to each error, and in what time; and where the counts do not tell."""
+    parts, untold = [], []
+    for first, group in groupby(zip(_firsts(scene), range(len(TARGETS)), strict=True), key=lambda pair: pair[0]):
+        if first is None:
+            continue
+        told: dict[str, list[str]] = {}
+        for _, target in group:
+            if waiting := _may_be_sooner(scene, first, target):
+                untold.append((target, waiting))
+            else:
+                told.setdefault(_time(first.reaches[target]), []).append(_percent(TARGETS[target]))
+        if told:
+            parts.append(
+                f"{_inside(first)} is soonest: {', '.join(f'{_listed(e)} in {time}' for time, e in told.items())}"
+            )
+    text = lead + "; ".join(parts)
+    said = [f"{text[:1].upper()}{text[1:]}."] if parts else []
+    for waiting, targets in groupby(untold, key=lambda pair: pair[1]):
+        errors = _listed([_percent(TARGETS[target]) for target, _ in targets])
+        late = f"{_listed([_inside(m) for m in waiting])} {'is' if len(waiting) == 1 else 'are'} not there yet"
+        said.append(f"Who is soonest to {errors} these counts do not tell: {late}.")
+    return said
+
+
+def _may_be_sooner(scene: Sequence[Measured], first: Measured, target: int) -> list[Measured]:
+    """Return those that had not come so near by their last count, which took less time than the first needs."""
+    least = first.reaches[target].times.estimate.value
+    waiting = [m for m in scene if m.reaches and m.reaches[target].how == "not-reached"]
+    return [m for m in waiting if m.reaches[target].times.estimate.value < least]
+
+
+def _why_not_unbiased(m: Measured) -> str:
+    if m.status == "known":
+        return "is biased by construction"
+    return "was rejected" if m.status == "rejected" else "is not judged unbiased yet"
+
+
+def _compared(scene: Sequence[Measured]) -> list[str]:
+    """Return how many times as long others take that came out unbiased, to the first target."""
+    there = sorted((m for m in scene if m.unbiased and _reaches(m, _AT)), key=_key)
+    if len(there) < 2:
+        return []
+    first, *others = there
+    said, unsure = [], []
+    for other in others:
+        ratio = other.reaches[_AT].relative_to(first.reaches[_AT])
+        if ratio is None:
+            continue
+        if ratio.low > 1:
+            most = first.reaches[_AT].how == "less-than"
+            times = f"at least {_plain(ratio.low)}" if most else _plain(ratio.value)
+            said.append(f"{times} times as fast as {_inside(other)}")
+        else:
+            unsure.append(_inside(other))
+    text = [f"To {_percent(TARGETS[_AT])} {_inside(first)} is {_listed(said[:_SHOWN])}."] if said else []
+    return text + ([f"Not to be told from it there: {_listed(unsure)}."] if unsure else [])
 
 
 def _marched(m: Measured) -> str:
-    march, value = m.record["march"], abs(float(m.cell.reference.value))
-    if m.judged.outcome == "not rejected":
+    if m.unbiased:
         return f"{m.record['label']} is exact here."
-    first, last = m.record["counts"][0], m.record["counts"][-1]
-    order = "" if march["order"] is None else f", of order steps^-{march['order']['value']:.2g}"
-    off = f"{first['rmse'] / value:.2g} with {first['count']} steps and {last['rmse'] / value:.2g} with {last['count']}"
-    return f"{m.record['label']} is biased, relatively by {off}{order}, and is not ranked."
+    order = m.record["order"]
+    if order is None:
+        return f"The order of {_inside(m)} cannot be seen within these counts."
+    within = f"{order['value']:.2f} [{order['low']:.2f}, {order['high']:.2f}]"
+    return f"{m.record['label']} is of order {within} from {order['first']} steps on."
 
 
-def _inside(label: str) -> str:
-    """Return a label inside a sentence; it begins with a plain word."""
-    return label[:1].lower() + label[1:]
+def _time(reach: Reach) -> str:
+    time = duration(reach.times.estimate.value)
+    words = {"less-than": f"less than {time}", "extrapolated": f"about {time} (beyond the last count)"}
+    return words.get(reach.how, time)
+
+
+def _plain(ratio: float) -> str:
+    """Return two digits, without an exponent."""
+    return f"{float(f'{ratio:.2g}'):,g}".replace(",", " ") if ratio < 1e6 else f"{ratio:.1g}"
+
+
+def _percent(error: float) -> str:
+    return f"{100 * error:g} %"
+
+
+def _inside(m: Measured) -> str:
+    """Return a label inside a sentence; it begins with a plain word, unless somebody named it otherwise."""
+    label: str = m.record["label"]
+    return label if label[1:2].isupper() else label[:1].lower() + label[1:]
 
 
 def _listed(items: Sequence[str]) -> str:
     return items[0] if len(items) == 1 else f"{', '.join(items[:-1])} and {items[-1]}"
-
-
-def _seconds(seconds: float) -> str:
-    for unit, size in (("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)):
-        if seconds >= size:
-            return f"{seconds / size:.3g} {unit}"
-    return f"{seconds / 1e-9:.3g} ns"

@@ -7,6 +7,7 @@ import hashlib
 import importlib.metadata
 import io
 import json
+import math
 import os
 import platform
 from collections.abc import Iterable, Sequence
@@ -35,7 +36,8 @@ from fogproof.verify import SCHEMA
 
 COLUMNS = (
     *("scene", "estimator", "points", "status", "count", "replicates", "mean", "reference", "reference_error"),
-    *("rmse", "rmse_low", "rmse_high", "predicted", "seconds_each", "variance", "exact_variance", "slope", "relative"),
+    *("rmse", "rmse_low", "rmse_high", "predicted", "seconds", "seconds_low", "seconds_high"),
+    *("variance", "exact_variance", "order", "relative"),
 )
 
 
@@ -97,8 +99,10 @@ def make_record(
                 "replicates": study.replicates,
                 "batch": study.batch,
                 "sobol": study.sobol,
+                "sobol_samples": next((cell.counts for cell in cells if cell.points == "sobol"), ()),
             },
             "batches": {"planned": len(batches), "done": done, "failed": len(failures)},
+            "advice": advice(study, measured),
             "cpu_seconds": sum(m.record["speed"]["cpu_total"] for m in measured if m.record["speed"]),
             "answers": answers,
             "scenes": scenes,
@@ -110,15 +114,31 @@ def make_record(
     )
 
 
-_ANSWER = ("best", "best_random", "text")
+_ANSWER = ("best", "best_unbiased", "text")
 
 
 def exit_code(measured: Iterable[Measured], failed: bool, missing: bool) -> int:
-    """Return 1 if something was rejected that ought to be right, or failed; 3 if something is inconclusive; else 0."""
-    statuses = {m.status for m in measured}
-    if "rejected" in statuses or failed:
+    """Return 1 if something was rejected that ought to be right, or failed; 3 if a variance may be infinite or work is missing.
+
+    What is merely not judged yet, for want of samples, is measured all the same.
+    """
+    measured = list(measured)
+    if failed or any(m.status == "rejected" for m in measured):
         return 1
-    return 3 if "inconclusive" in statuses or missing else 0
+    return 3 if missing or any(m.status == "inconclusive" and m.judged.infinite for m in measured) else 0
+
+
+def advice(study: Study, measured: Sequence[Measured]) -> str:
+    """Return which key of the study to raise for what is not judged unbiased yet, "" if nothing is open."""
+    waiting = [m for m in measured if m.status == "inconclusive" and m.judged.wants > 1 and m.cell.points == "random"]
+    if not waiting:
+        return ""
+    names = ", ".join(dict.fromkeys(f"{m.cell.scene.name} / {m.cell.name}" for m in waiting))
+    times = math.ceil(max(m.judged.wants for m in waiting))
+    return (
+        f"Not judged unbiased yet, too few samples for so skewed values: {names}. Raise `replicates` to {times * study.replicates}"
+        f" at least, or the last of `samples` to {times * study.samples[-1]}; what is drawn already is kept."
+    )
 
 
 def _scene(number: int, study: Study, measured: Sequence[Measured]) -> dict[str, Any]:
@@ -211,10 +231,12 @@ def _rows(scene: dict[str, Any], estimator: dict[str, Any]) -> Iterable[list[Any
             "status": estimator["status"],
             "reference": scene["reference"]["value"],
             "reference_error": scene["reference"]["error"],
-            "seconds_each": speed["counts"][number]["value"],
+            "seconds": speed["counts"][number]["seconds"],
+            "seconds_low": speed["counts"][number]["low"],
+            "seconds_high": speed["counts"][number]["high"],
             "variance": variance.get("measured"),
             "exact_variance": variance.get("exact"),
-            "slope": (estimator["slope"] or {}).get("value"),
+            "order": (estimator["order"] or {}).get("value"),
             "relative": (speed["relative"] or {}).get("value"),
         }
         yield [spreadsheet_cell(values[name]) for name in COLUMNS]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import concurrent.futures
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError, Future
 from dataclasses import dataclass, field
 
@@ -45,13 +45,13 @@ class _Work:
 def draw_missing(
     study: Study,
     cells: Sequence[Cell],
-    batches: Sequence[Batch],
+    batches: Iterable[Batch],
     store: Store,
     pool: Workers,
     advance: Advance = lambda batch, result: None,
     draw: Draw = run_batch,
 ) -> None:
-    """Draw every batch that is not in the store yet.
+    """Draw every batch that is not in the store yet, in the order given.
 
     On KeyboardInterrupt no more is handed out, what is under way is still stored, and the interrupt goes on.
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fogproof.checks.statistics.moments import Moments
-from fogproof.checks.statistics.tails import binomial_at_most, binomial_interval, student_two_sided
+from fogproof.checks.statistics.tails import binomial_at_most, binomial_interval, normal_quantile, student_two_sided
 from fogproof.checks.verdict import EffectInterval, Finding, Outcome
 
 SLACK = 0.05
@@ -22,6 +22,7 @@ SLACK = 0.05
 
 _SKEWNESS = 0.25  # coverage lost for each square of the skewness
 _MISS = 0.01
+_FORESEEN = 1e12  # realisations: nobody asks for more
 
 
 @dataclass(frozen=True)
@@ -48,10 +49,13 @@ def degrees_of_freedom(squares: Moments) -> float:
     return math.inf if spread == 0 else min(max(2 / spread**2, 1.0), 1e9)
 
 
-def coverage_test(name: str, data: Coverage, values: Sequence[Moments], alpha: float) -> Finding:
+def coverage_test(
+    name: str, data: Coverage, values: Sequence[Moments], off: Sequence[Moments], alpha: float
+) -> Finding:
     """Test that the coverage is not below what is right (for several channels, that of all together): an exact binomial bound.
 
     values  the moments of the estimates, one channel each
+    off     those of the square of the error less that of the standard error
     """
     freedom = [degrees_of_freedom(squares) for squares in data.squares]
     missed = [1 - _nominal(one) for one in freedom]
@@ -63,10 +67,31 @@ def coverage_test(name: str, data: Coverage, values: Sequence[Moments], alpha: f
     outcome: Outcome = "rejected" if p <= alpha else "not rejected"
     message = f"{share:.2%} of the intervals of two standard errors hold the reference, {nominal:.2%} would be right"
     if min(freedom, default=math.inf) < 30:
-        message += f" with {min(freedom):.2g} degrees of freedom: use Student's t for intervals"
+        degrees = f"{min(freedom):.2g} degree{'s' * (round(min(freedom), 1) != 1)}"
+        message += f" with {degrees} of freedom: use Student's t for intervals"
+    each = zip(freedom, data.squares, values, off, strict=True)
+    needed = max((_to_tell_n(*one, alpha) for one in each), default=0.0)
+    if data.n < needed < _FORESEEN:
+        message += f"; that they divide by n instead of n - 1 would show with {needed:.2g} realisations"
     cause = "wrong standard errors" if outcome == "rejected" else ""
     interval = EffectInterval(low - nominal, high - nominal, 1 - _MISS)
     return Finding(name, outcome, message, p, alpha, False, share, share - nominal, interval=interval, cause=cause)
+
+
+def _to_tell_n(freedom: float, squares: Moments, values: Moments, off: Moments, alpha: float) -> float:
+    """Return how many realisations tell standard errors from those that are too small by sqrt(1 - 1 / n).
+
+    off  moments of (x - reference)^2 - stderr^2, whose mean leaves 0 by a share 1 / n of the first; Student's test of it loses
+         what is taken off for the skewness
+    """
+    if min(values.m2, squares.mean, off.m2) <= 0 or math.isinf(freedom):
+        return 0.0
+    kurtosis = values.n * (values.m4 / values.m2) / values.m2
+    effect = 1 / ((freedom + 1) * math.sqrt(max(kurtosis - 1, 0.0) + (squares.deviation / squares.mean) ** 2))
+    z, skewness = normal_quantile(alpha / 2), abs(off.skewness) / 3
+    if (skewness * z**3) ** 2 > off.n:
+        return 0.0  # too skewed yet; the test itself says what it needs
+    return ((z + normal_quantile(_MISS)) / effect) ** 2 / max(1 - 2 * skewness * effect, 0.25)
 
 
 def _nominal(freedom: float) -> float:

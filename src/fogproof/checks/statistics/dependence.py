@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from fogproof.checks.statistics.evenness import CALLS, GROUPS, evenness_test
 from fogproof.checks.statistics.goodness import binomial_p
 from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.statistics.tails import binomial_at_least, binomial_at_most, gamma_above, normal_two_sided
@@ -21,6 +22,7 @@ _WAYS = (*(f"{lag} apart" for lag in LAGS), "half a call apart", "mirrored in th
 _WINDOW = 64  # realisations of a stretch
 _SOME = np.uint64(63)  # a stretch begins where so many bits of a fingerprint are zero, wherever that is
 _MOST_WINDOWS = 1 << 14  # remembered
+_ENOUGH = 50 * GROUPS  # realisations of a call whose values are counted cell by cell
 _CHANCE = 1e-12  # a repetition less likely than this is none
 _REMEMBERED = 1 << 17  # realisations whose fingerprints are kept
 _MANY = 1e4  # expected pairs of large values: the normal law is then accurate far into its tail
@@ -41,6 +43,8 @@ class Succession:
     windows    fingerprints of stretches of 64 realisations
     prints     fingerprints of realisations, and `calls` the calls that they came from
     means      size and (channels,) mean of every call
+    edges      (channels, cells - 1) between cells of about equal probability
+    counts     (calls, channels, cells) of the first calls that are large enough
     """
 
     threshold: np.ndarray
@@ -53,6 +57,8 @@ class Succession:
     prints: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=np.uint64))
     calls: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=np.int64))
     means: tuple[tuple[int, np.ndarray], ...] = ()
+    edges: np.ndarray = field(default_factory=lambda: np.empty((1, 0)))
+    counts: tuple[np.ndarray, ...] = ()
 
     @staticmethod
     def about(first: np.ndarray) -> Succession:
@@ -61,12 +67,18 @@ class Succession:
             return Succession(np.zeros(first.shape[1]))
         # The middle of few values is one of them: what is larger must not be what is never drawn.
         middle = np.quantile(first, 0.5, axis=0, method="lower")
-        return Succession(np.where(middle == first.max(axis=0), np.nextafter(middle, -np.inf), middle))
+        edges = np.quantile(first, np.arange(1, GROUPS) / GROUPS, axis=0, method="lower").T
+        return Succession(
+            np.where(middle == first.max(axis=0), np.nextafter(middle, -np.inf), middle),
+            edges=np.ascontiguousarray(edges),
+        )
 
     def after(self, x: np.ndarray, sizes: Sequence[int]) -> Succession:
         """Return the record after one more batch (n, channels), drawn in calls of these sizes."""
         large, prints = np.ascontiguousarray((x > self.threshold).T), fingerprints(x)
-        pairs, both, means, windows = self.pairs.copy(), self.both + np.zeros((1, x.shape[1]), dtype=np.int64), [], []
+        pairs, both = self.pairs.copy(), self.both + np.zeros((1, x.shape[1]), dtype=np.int64)
+        means, windows = [], []
+        counts: list[np.ndarray] = []
         alike, start = self.alike, 0
         for size in sizes:
             here = slice(start, start + size)
@@ -76,6 +88,8 @@ class Succession:
                 both[way] += [np.count_nonzero(a & b) for a, b in zip(left, right, strict=True)]
             alike += int(np.count_nonzero(prints[here][1:] == prints[here][:-1]))
             means.append((size, np.mean(x[here], axis=0)))
+            if size >= _ENOUGH and len(self.counts) + len(counts) < CALLS:
+                counts.append(_counted(x[here], self.edges))
             if len(self.windows) < _MOST_WINDOWS:
                 windows.append(_stretches(prints[here]))
         room = max(_REMEMBERED - len(self.prints), 0)
@@ -91,7 +105,14 @@ class Succession:
             prints=np.concatenate([self.prints, prints[:room]]),
             calls=np.concatenate([self.calls, calls[:room]]),
             means=(*self.means, *means),
+            counts=(*self.counts, *counts),
         )
+
+
+def _counted(x: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """Return (channels, cells) how many values (n, channels) lie in each cell."""
+    cells = [np.searchsorted(edge, column) for edge, column in zip(edges, x.T, strict=True)]
+    return np.stack([np.bincount(cell, minlength=edges.shape[1] + 1) for cell in cells])
 
 
 def _paired(large: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
@@ -199,6 +220,15 @@ def spread_of_calls(name: str, record: Succession, data: Sequence[Moments], alph
     message += "; realisations of one call depend on each other" if rejected else ""
     outcome: Outcome = "rejected" if rejected else "not rejected"
     return Finding(name, outcome, message, p, alpha, False, worst[1], worst[1], cause="correlation" if rejected else "")
+
+
+def evenness_of_calls(name: str, record: Succession, alpha: float) -> Finding | None:
+    """Test that the values of a call fill cells as unevenly as independent ones do; None where no two calls are large enough."""
+    if len(record.counts) < 2:
+        return None
+    labels = tuple(f"channel {c}" for c in range(len(record.edges))) if len(record.edges) > 1 else ("the values",)
+    # What is promised of an estimator is its mean; the smallest share of stratification that is seen is no promise about that.
+    return replace(evenness_test(name, labels, np.stack(record.counts), alpha), resolution=None)
 
 
 def _nearly_normal(data: Moments, n: int) -> bool:

@@ -144,7 +144,7 @@ def _two_values(name: str, what: str, data: Moments, reference: float, error: fl
     effect = data.mean - reference
     inside = min(max(claim[0], 0.0), 1.0), min(max(claim[1], 0.0), 1.0)
     reach = binomial_reach(data.n, *inside, alpha) * step + error
-    resolution = Resolution(f"bias of {what}", reach, MISS)
+    resolution = Resolution(f"bias of {what}", reach, MISS, reference)
     return Finding(name, outcome, message, p, alpha, False, effect, effect, resolution)
 
 
@@ -168,7 +168,7 @@ def _student(
     outcome: Outcome = "rejected" if p <= alpha else "not rejected"
     exact = not light and growth * needed**3 < 0.3 and error < 0.01 * data.stderr
     reach = light_tailed_reach(data.n, alpha) * data.stderr if light else student_reach(data, alpha)
-    resolution = Resolution(f"bias of {what}", reach + error, MISS) if math.isfinite(reach) else None
+    resolution = Resolution(f"bias of {what}", reach + error, MISS, reference) if math.isfinite(reach) else None
     if light:
         message += ", its tails declared to be light"
     return Finding(name, outcome, message, p, alpha, exact, z, effect, resolution)
@@ -216,7 +216,7 @@ def _lawless(
     if finding.outcome == "inconclusive" and known.bounded:
         reach = detectable(data.n, known, alpha, MISS) + error
         message = f"{finding.message.partition(';')[0]}; within {known.words()} chance explains it"
-        resolution = Resolution(f"bias of {what}", reach, MISS)
+        resolution = Resolution(f"bias of {what}", reach, MISS, reference)
         return replace(finding, outcome="not rejected", message=message, p_value=p, alpha=alpha, resolution=resolution)
     return finding
 
@@ -224,4 +224,4 @@ def _lawless(
 def _corrected(p_normal: float, growth: float, z: float, needed: float) -> float:
     """Return the corrected p-value; the correction stops growing where the expansion stops being one."""
     limit = max(needed, (LARGEST_CORRECTION / growth) ** (1 / 3)) if growth > 0 else math.inf
-    return min(1.0, p_normal * math.exp(growth * min(z, limit) ** 3))
+    return min(1.0, p_normal * math.exp((growth ** (1 / 3) * min(z, limit)) ** 3))  # z alone may be as large as 1e300

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-_ORDINARY = 2.0**150  # deviations between 1 / this and this have fourth powers that binary64 holds
+ORDINARY = 2.0**150  # deviations between 1 / this and this have powers, up to the sixth, that binary64 holds
 _LARGE = 2.0**1000  # sums of such numbers may overflow
 
 
@@ -54,7 +54,7 @@ class Moments:
         scale = _scale_of(high - low) if (self.scale, other.scale) != (1, 1) else 1.0
         n, na, nb = self.n + other.n, self.n, other.n
         d = (other.mean - self.mean) / scale
-        if scale == 1 and not 1 / _ORDINARY < abs(d) < _ORDINARY and d != 0:
+        if scale == 1 and not 1 / ORDINARY < abs(d) < ORDINARY and d != 0:
             scale = _scale_of(high - low)
             d = (other.mean - self.mean) / scale
         dn = d / n
@@ -112,7 +112,7 @@ class Moments:
     @property
     def skewness(self) -> float:
         """Sample skewness."""
-        return math.sqrt(self.n) * self.m3 / self.m2**1.5 if self.m2 > 0 else 0.0
+        return math.sqrt(self.n) * (self.m3 / self.m2) / math.sqrt(self.m2) if self.m2 > 0 else 0.0
 
     @property
     def largest(self) -> float:
@@ -126,6 +126,6 @@ class Moments:
 
 
 def _scale_of(spread: float) -> float:
-    if spread == 0 or 1 / _ORDINARY < spread < _ORDINARY or math.isinf(spread):
+    if spread == 0 or 1 / ORDINARY < spread < ORDINARY or math.isinf(spread):
         return 1.0
     return math.ldexp(1.0, min(math.frexp(spread)[1], 1023))

@@ -64,9 +64,9 @@ class Successions:
         counts = np.array([n, max(n - 1, 0)])
         whole = n - n % LAGS if first else 0
         c = [(one[:whole] >> _BITS).astype(np.float32) for one in d]
-        many = np.concatenate([[whole], np.maximum(whole - np.arange(1, LAGS + 1), 0), [whole // 2]])
+        many = np.concatenate([[whole], np.maximum(whole - np.arange(1, LAGS + 1), 0), [n // 2 if first else 0]])
         products = [[np.rint(float(one @ other)) for other in c] for one in c]
-        half = [[np.rint(float(one[: whole // 2] @ other[whole - whole // 2 :])) for other in c] for one in c]
+        half = [[np.rint(float(one @ other)) for other in _halves(d, 1, first)] for one in _halves(d, 0, first)]
         return Successions(
             sums,
             squares,
@@ -82,6 +82,13 @@ class Successions:
     def merged(self, other: Successions) -> Successions:
         """Return the sums of both streams."""
         return Successions(*(getattr(self, f.name) + getattr(other, f.name) for f in fields(self)))
+
+
+def _halves(d: list[np.ndarray], second: int, first: bool) -> list[np.ndarray]:
+    """Return the coarse scores of the first or the second half of a call, whatever its size; none but of the first batches."""
+    half = len(d[0]) // 2 if first else 0
+    begin = second * (len(d[0]) - half)
+    return [(one[begin : begin + half] >> _BITS).astype(np.float32) for one in d]
 
 
 def _lagged(c: list[np.ndarray]) -> np.ndarray:
@@ -133,11 +140,20 @@ def serial_test(name: str, sums: Successions | None, alpha: float) -> Finding:
     message += ": an antithetic stream" if rejected and best.coefficient < -_ANTITHETIC else ""
     cause = "dependent samples" if abs(best.coefficient) > _STRONG else "correlation"
     pairs = int(sums.many[1]) if sums.many[0] else int(sums.counts[1])
-    critical = math.sqrt(2 * math.log(2 * 2.0 * LAGS * sums.next.size / alpha)) + normal_quantile(MISS)
-    seen = Resolution(f"correlation at a lag up to {LAGS}", min(critical / math.sqrt(max(pairs, 1)), 1.0), MISS)
+    seen = Resolution(f"correlation at a lag up to {LAGS}", _seen(pairs, 2.0 * LAGS * sums.next.size, alpha), MISS)
     return Finding(
         name, outcome, message, p, alpha, False, best.z, best.coefficient, seen, cause=cause if rejected else ""
     )
+
+
+def _seen(pairs: int, rivals: float, alpha: float) -> float:
+    """Return the correlation of uniform scores that so many pairs show, but for `MISS`.
+
+    Bernstein's exponent z^2 / (2 (1 + z / sqrt(pairs))) must reach the level, and products of correlated scores scatter more.
+    """
+    root, level = math.sqrt(max(pairs, 1)), math.log(2 * rivals / alpha)
+    critical = level / root + math.sqrt((level / root) ** 2 + 2 * level)
+    return min((critical + normal_quantile(MISS) * (1 + critical / root)) / root, 1.0)
 
 
 @dataclass(frozen=True)

@@ -28,8 +28,9 @@ class Procedural:
     directional  whether sigma_t takes the direction as well
     channels     how many colour or wavelength channels sigma_t returns; None if it is grey
     lower, upper (3,) corners of the box outside of which is vacuum [m]; infinite unless given
-    detail       the smallest length over which sigma_t changes [m]: quadrature looks at least that closely, and cannot
-                 see anything smaller
+    detail       a length in which sigma_t (and albedo, emission) changes smoothly but for at most one jump or kink [m]. This
+                 is what error bounds rest on: nobody sees between the places looked at. Where none is given, an eighth of
+                 what a ray crosses is taken for it
     albedo       sigma_s / sigma_t in [0, 1]: a constant, or an array function of points
     phase        phase function
     emission     emitted radiance L_e [W/(m^2 sr)]: a constant, or an array function of points; multiplied by sigma_a

@@ -44,3 +44,7 @@ class Method:
     def variance(self, scene: Question) -> Reference | None:
         """Return the exact variance of one realisation, None where the oracle has none."""
         return None
+
+    def bounds(self, scene: Question) -> tuple[float, float] | None:
+        """Return numbers between which every realisation lies, None where there are none or nobody knows them."""
+        return None

@@ -6,6 +6,7 @@ The module lies beside the study file or is installed. The class, or a function 
     draw       (rng, n) -> (n,) independent realisations of the scene's quantity, or `Draws` with their cost; all chance comes
                from rng, the workers' threads may call it at the same time
     variance   the exact variance of a realisation, a number or a `Reference`; may be missing
+    bounds     two numbers between which every realisation lies; may be missing. With both, even skewed ones are judged
 
 and the class itself may have
 
@@ -24,7 +25,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from fogproof.contracts import Draws, Reference
-from fogproof.errors import FogproofError, InvalidInputError, SubjectError
+from fogproof.errors import FogproofError, InvalidInputError, SubjectError, shorten
 from fogproof.study.methods.method import Method
 from fogproof.study.own_code import digest_of, loaded
 from fogproof.study.question import Question
@@ -54,6 +55,20 @@ class Own(Method):
         """Return what it says its variance is, if anything."""
         said = getattr(self._made(scene), "variance", None)
         return None if said is None else Reference.of("variance", said)
+
+    def bounds(self, scene: Question) -> tuple[float, float] | None:
+        """Return between what it says its realisations lie, if anything."""
+        said = getattr(self._made(scene), "bounds", None)
+        if said is None:
+            return None
+        try:
+            low, high = (float(end) for end in said)
+        except (TypeError, ValueError):
+            low = high = np.nan
+        if not (np.isfinite(high - low) and low < high):
+            what = f"{self.source}: bounds must be two finite numbers, the lower first, or None, got {shorten(said)}"
+            raise InvalidInputError(what, "bounds")
+        return low, high
 
     @property
     def title(self) -> str:

@@ -111,6 +111,10 @@ class Ratio(Method):
         majorant = self.majorant or _bounds(scene)[1]
         return transmittance_variance(scene.built_medium, scene.ray, "ratio", majorant)
 
+    def bounds(self, scene: Question) -> tuple[float, float]:
+        """Return 0 and 1: a product of numbers between them."""
+        return 0.0, 1.0
+
 
 @dataclass(frozen=True)
 class ResidualRatio(Method):

@@ -1,0 +1,52 @@
+"""Names at the ends of curves, instead of a legend: spread so that none covers another, each tied to its curve."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from textwrap import wrap
+
+from fogproof.reports.charts.colours import INK
+from fogproof.reports.charts.sheet import FONT_SIZE, Shape, Sheet, Words
+
+_LINE = 1.15 * FONT_SIZE
+_GAP = 0.3 * FONT_SIZE
+
+
+@dataclass(frozen=True)
+class EndLabel:
+    """A name and where its curve ends [px]."""
+
+    text: str
+    colour: str
+    end: tuple[float, float]
+    dash: tuple[float, float] | None = None
+
+
+def lines_of(text: str, width: int) -> list[str]:
+    """Return a name on as many lines as it needs, of at most so many characters."""
+    return wrap(text, width) or [text]
+
+
+def height_of(names: Sequence[str], width: int) -> float:
+    """Return how high [px] names are, one below the other."""
+    return sum(len(lines_of(name, width)) * _LINE + _GAP for name in names)
+
+
+def write_labels(sheet: Sheet, labels: Sequence[EndLabel], right: float, top: float, bottom: float, width: int) -> None:
+    """Write the labels to the right of an axes box that ends at `right`, between `top` and `bottom` [px] where they have room."""
+    order = sorted(labels, key=lambda label: (label.end[1], label.end[0]))
+    heights = [len(lines_of(label.text, width)) * _LINE + _GAP for label in order]
+    tops: list[float] = []
+    for label, height in zip(order, heights, strict=True):
+        least = tops[-1] + heights[len(tops) - 1] if tops else top
+        tops.append(max(label.end[1] - height / 2, least))
+    lowest = bottom
+    for k in reversed(range(len(tops))):  # what hangs over the bottom pushes back
+        tops[k] = min(tops[k], lowest - heights[k])
+        lowest = tops[k]
+    for label, start, height in zip(order, tops, heights, strict=True):
+        middle, x = start + (height - _GAP) / 2, right + 26
+        sheet.shapes.append(Shape([[label.end, (right + 8, middle), (x - 4, middle)]], label.colour, 1.2, label.dash))
+        for number, line in enumerate(lines_of(label.text, width)):
+            sheet.shapes.append(Words(x, start + (number + 0.8) * _LINE, line, INK))

@@ -1,0 +1,1 @@
+"""Estimators of derivatives, of path lengths and of counts of scatterings."""

@@ -1,0 +1,1 @@
+"""Relations that hold whatever the scene, kept by our own path tracer."""

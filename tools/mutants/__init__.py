@@ -1,0 +1,1 @@
+"""Realistic errors planted in the project's own source, one at a time: do its tests see them?"""
