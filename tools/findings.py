@@ -193,9 +193,7 @@ def centre() -> str:
     middle = np.full((1, 2), 0.5)
     square = MitsubaWarp("square_to_uniform_square_concentric", UnitSquare()).sample(middle)[0]
     beckmann = MitsubaWarp("square_to_beckmann", UnitHemisphere(), later=(0.3,)).sample(middle)[0]
-    return (
-        f"At u = (1/2, 1/2) they return {vector(square)} and {vector(beckmann)}, and finite points all around."
-    )
+    return f"At u = (1/2, 1/2) they return {vector(square)} and {vector(beckmann)}, and finite points all around."
 
 
 def vector(x: np.ndarray, digits: int = 4) -> str:
