@@ -10,6 +10,9 @@ pytest.importorskip("mitsuba")
 from fogproof.adapters.mitsuba import MitsubaBSDF, MitsubaPhase, runtime
 from fogproof.analytic import phase_pdf
 from fogproof.catalogue import all_cases
+from fogproof.checks import check_sampler
+from fogproof.domains import UnitSphere
+from fogproof.errors import SubjectError
 from fogproof.scene import HenyeyGreenstein, Mixture
 
 CASES = {case.name.removeprefix("mitsuba/"): case for case in all_cases() if case.name.startswith("mitsuba/")}
@@ -62,6 +65,30 @@ def test_both_variants_give_the_same_numbers(monkeypatch, vectorised):
     assert metal.pdf(np.empty((0, 3))).shape == (0,)
     monkeypatch.undo()
     runtime.load()
+
+
+def test_arrays_of_drjit_are_read_or_told_what_to_do():
+    """(3, n) vectors and constants are named with the fix; tensors and numbers are taken as they are."""
+    if not runtime.vectorised():
+        pytest.skip("no libLLVM that Dr.Jit can use: set DRJIT_LIBLLVM_PATH")
+    mi = runtime.load()
+
+    def points(u):
+        columns = (mi.Float(np.ascontiguousarray(c)) for c in u.T)
+        return mi.warp.square_to_uniform_sphere(mi.Point2f(*columns))
+
+    def uniform(x):
+        return mi.Float(np.full(len(x), 1 / (4 * np.pi)))
+
+    def check(sample, pdf):
+        return check_sampler(sample, pdf, UnitSphere(), dimensions=2, precision="float32", samples=20_000)
+
+    assert check(lambda u: np.array(points(u)).T, uniform).outcome == "not rejected"
+    assert check(lambda u: mi.TensorXf(np.array(points(u)).T.copy()), uniform).outcome == "not rejected"
+    with pytest.raises(SubjectError, match="transpose it: one point a row"):
+        check(points, uniform)
+    with pytest.raises(SubjectError, match="one value a point"):
+        check(lambda u: np.array(points(u)).T, lambda x: mi.Float(1 / (4 * np.pi)))
 
 
 @pytest.mark.parametrize(

@@ -95,6 +95,15 @@ def test_densities_of_the_samples_alone(tmp_path):
     assert check_file(written(path, np.column_stack([x, hole])), spec).verdict.cause == "claimed hole"
 
 
+def test_densities_on_a_line_without_end(tmp_path):
+    t = -np.log1p(-np.random.default_rng().random(40_000))
+    spec = {"domain": "half-line", "columns": ["x", "pdf"]}
+    path = written(tmp_path / "t.npy", np.stack([t, np.exp(-t)], axis=-1))
+    assert check_file(path, spec).verdict.outcome == "not rejected"
+    path = written(path, np.stack([t, 1.2 * np.exp(-1.2 * t)], axis=-1))
+    assert check_file(path, spec).verdict.outcome == "rejected"
+
+
 def test_a_table_judges_no_more_samples_than_it_can(tmp_path):
     """Straight lines through a curved density are not the density."""
     x = np.linspace(0, 1, 41)
@@ -177,3 +186,7 @@ def test_columns_must_be_named_where_there_are_more(tmp_path):
         check_file(written(path, directions(500)), {"domain": "sphere"})
     with pytest.raises(FogproofError, match="cannot read"):
         check_file(tmp_path / "nowhere.npy", DIRECTIONS, Settings(seed=1))
+    with pytest.raises(FogproofError, match="transpose it"):
+        check_file(written(path, directions(500).T), {**DIRECTIONS, "columns": ["x", "x", "x"]})
+    with pytest.raises(FogproofError, match="2 columns pdf"):
+        check_file(written(path, np.ones((500, 3))), {"domain": "line", "columns": ["x", "pdf", "pdf"]})

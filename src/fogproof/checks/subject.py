@@ -129,7 +129,7 @@ def _reshaping(got: tuple[int, ...], wanted: tuple[int, ...]) -> str:
         return "; transpose it: one point a row"
     if got == (*wanted, 1):
         return "; drop the last axis: x[:, 0]"
-    if got == () and len(wanted) == 1:
+    if got in ((), (1,)) and len(wanted) == 1:
         return "; a constant needs one value a point: np.full(len(x), value)"
     return ""
 

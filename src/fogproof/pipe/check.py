@@ -90,7 +90,7 @@ def check_file(path: str | Path, spec: str | Path | Mapping[str, Any], settings:
 
 def _of_file(path: Path, base: Spec, settings: Settings) -> Outcome:
     rows, named = read_rows(path, len(base.columns), base.type)
-    columns = _columns(path, base, rows.shape[1], named)
+    columns = _columns(path, base, rows.shape, named)
     precision: Precision = base.precision or ("float32" if rows.dtype == np.float32 else "float64")
     if not base.samples_points:
         options: dict[str, Any] = {
@@ -221,16 +221,21 @@ def _never(x: np.ndarray) -> np.ndarray:
     raise InvalidInputError("there is nobody to be asked for a density", "pdf")
 
 
-def _columns(path: Path, spec: Spec, count: int, named: tuple[str, ...]) -> tuple[str, ...]:
+def _columns(path: Path, spec: Spec, shape: tuple[int, ...], named: tuple[str, ...]) -> tuple[str, ...]:
     """Return the names of a file's columns: those of the spec, else its own, else those of bare points or values."""
-    first = "x" if spec.samples_points else "value"
+    (rows, count), first = shape, "x" if spec.samples_points else "value"
     bare = int(np.prod(spec.domain.shape, dtype=int)) if spec.domain is not None else 1
     columns = spec.columns or named or (first,) * (count if not spec.samples_points else min(count, bare))
     if len(columns) != count:
         told = f"{len(columns)} are named" if spec.columns or named else f"a point has {bare}"
         fix = 'name them all in the spec, as in columns = ["x", "x", "x", "pdf"]'
+        if rows == len(columns):
+            fix = "transpose it: one sample a row"
         raise InvalidInputError(f"{path} has {count} columns, and {told}; {fix}", "columns")
     points = columns.count("x")
+    for name in set(columns) - {"x", "weight", "value"}:
+        if columns.count(name) > 1:
+            raise InvalidInputError(f"{path} has {columns.count(name)} columns {name}; there is one at most", "columns")
     if spec.samples_points and points != bare:
         raise InvalidInputError(f"{path} has {points} columns x; a point of {spec.domain} has {bare}", "columns")
     if not spec.samples_points and "value" not in columns:

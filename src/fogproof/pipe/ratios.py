@@ -15,12 +15,13 @@ import numpy as np
 from fogproof.checks import Finding, Verdict, check_estimator
 from fogproof.checks.subject import Subject, in_domain
 from fogproof.contracts import Draw, Reference
-from fogproof.domains import Law
+from fogproof.domains import Domain, Law
 from fogproof.errors import SubjectError
 from fogproof.pipe.recorded import LEAST
 
 _ROWS_A_PART = 5000  # fewer leave ratios too skewed for a test of their mean
 _PARTS = 64
+_FEW = 8  # points of the pilot in a cell: q leaves out emptier ones
 _PILOT_A_CELL = 30  # points of the pilot that tell how much of q lies in a fine cell
 
 
@@ -33,13 +34,21 @@ class _Cells:
 
     @property
     def count(self) -> int:
-        return self.side ** len(self.law.axes)
+        return int(self.side ** len(self.law.axes))
+
+    def endless(self, domain: Domain) -> np.ndarray:
+        """Return which cells may have no end: the outermost ones of a domain that has none."""
+        if np.isfinite(domain.measure):
+            return np.zeros(self.count, dtype=bool)
+        place = np.array(np.unravel_index(np.arange(self.count), (self.side,) * len(self.law.axes)))
+        return np.asarray(((place == 0) | (place == self.side - 1)).any(axis=0))
 
     def of(self, x: np.ndarray) -> np.ndarray:
         """Return the cell of each point (n,)."""
         axes = len(self.law.axes)
         place = self.law.coordinates(x, np.full((len(x), axes), 0.5)) * self.side
-        return np.ravel_multi_index(tuple(np.minimum(place.astype(np.intp), self.side - 1).T), (self.side,) * axes)
+        corner = np.minimum(place.astype(np.intp), self.side - 1)
+        return np.asarray(np.ravel_multi_index(tuple(corner.T), (self.side,) * axes))
 
 
 def check_ratios(subject: Subject, draw: Draw, alpha: float, seed: int | None) -> Verdict:
@@ -63,7 +72,10 @@ def check_ratios(subject: Subject, draw: Draw, alpha: float, seed: int | None) -
     law = subject.domain.law(draw.x[:cut][~at[:cut]])
     side = max(1, math.floor((cut / _PILOT_A_CELL) ** (1 / len(law.axes))))
     cells = _Cells(law, side)
-    pilot = np.bincount(cells.of(draw.x[:cut][~at[:cut]]), minlength=cells.count) + 1.0
+    pilot = np.bincount(cells.of(draw.x[:cut][~at[:cut]]), minlength=cells.count).astype(float)
+    pilot[(pilot < _FEW) | cells.endless(subject.domain)] = 0.0  # where ratios have no bound
+    if not pilot.any():
+        raise SubjectError(f"{n} samples are too few to tell where they are", "file")
     share = pilot / pilot.sum()  # of q; inside a cell it is the domain's known law
     parts = int(min(max((n - cut) // _ROWS_A_PART, 1), _PARTS, cells.count))
     before = np.cumsum(share) - 0.5 * share

@@ -14,7 +14,7 @@ import re
 import threading
 from collections.abc import Callable, Mapping
 from functools import cache
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -31,6 +31,7 @@ _PLACES = (
 )
 _NAMES = ("libLLVM.so.*", "libLLVM-*.so*", "libLLVM*.dylib")
 _OLDEST = 17
+T = TypeVar("T")
 _CALLING = threading.RLock()  # Dr.Jit's state is the process's, and a second thread would meet a half-imported package
 
 
@@ -93,7 +94,7 @@ def loaded(mi: Any, plugin: Plugin) -> Any:
     return mi.load_dict(description(plugin))
 
 
-def built(make: Callable[[Any], Any]) -> Any:
+def built(make: Callable[[Any], T]) -> T:
     """Return `make(mitsuba)`, with nobody else in Dr.Jit."""
     mi = load()
     with _CALLING:
