@@ -35,6 +35,9 @@ class Subject:
     events: Mapping[int, float] = field(default_factory=dict)
     uniform_bits: int | None = None
     quasi_random: bool = False
+    breaks: Mapping[str, Any] = field(default_factory=dict)
+    support: Domain | None = None
+    inverse: Callable[[np.ndarray], Any] | None = None
 
     @property
     def bits(self) -> int:
