@@ -8,7 +8,7 @@ BIN    := $(VENV)/bin
 export OPENBLAS_NUM_THREADS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help verify gallery study test lint format calibrate field-bugs repeat families oracle-docs fuzz-oracle oracle-hard kill-study torture golden bench mutants mutants-sample clean
+.PHONY: help verify gallery study test lint format calibrate field-bugs repeat families oracle-docs docs sdist fuzz-oracle oracle-hard kill-study torture golden bench mutants mutants-sample clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -81,6 +81,17 @@ mutants: $(VENV)/.installed-test  ## realistic errors planted in our own source,
 mutants-sample: $(VENV)/.installed-test  ## thirty of them, drawn by SEED
 	$(BIN)/python tools/mutants --sample 30 --seed $(or $(SEED),1)
 
+docs: $(VENV)/.installed-docs  ## the documentation as a site that needs no network, in build/site
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict
+
+sdist: $(VENV)/.installed-test  ## what is published, unpacked, passes its own tests
+	rm -rf build/sdist && mkdir -p build/sdist
+	$(BIN)/python -m pip install --quiet build
+	$(BIN)/python -m build --sdist --outdir build/sdist .
+	cd build/sdist && tar xzf *.tar.gz && cd fogproof-*/ && $(PYTHON) -m venv .venv && \
+		.venv/bin/python -m pip install --quiet --upgrade 'pip>=25.1' && .venv/bin/python -m pip install --quiet . --group test && \
+		.venv/bin/python -m pytest -q tests/oracle/test_transmittance.py tests/oracle/test_airlight.py tests/scene tests/house
+
 clean:  ## remove the environment and everything built
 	rm -rf $(VENV) build
 
@@ -94,6 +105,10 @@ $(VENV)/.installed: $(VENV)/bin/python pyproject.toml
 
 $(VENV)/.installed-test: $(VENV)/.installed
 	$(BIN)/python -m pip install --quiet --group test
+	@touch $@
+
+$(VENV)/.installed-docs: $(VENV)/.installed
+	$(BIN)/python -m pip install --quiet --group docs
 	@touch $@
 
 $(VENV)/.installed-lint: $(VENV)/.installed-test
