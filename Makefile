@@ -20,7 +20,7 @@ gallery: $(VENV)/.installed  ## the theory in pictures; the page lands in build/
 	$(BIN)/fogproof gallery -o build/gallery
 
 test: $(VENV)/.installed-test  ## the project's own tests
-	$(BIN)/python -m pytest --numprocesses auto
+	$(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
 lint: $(VENV)/.installed-lint  ## ruff, mypy and the import contracts
 	$(BIN)/ruff check .

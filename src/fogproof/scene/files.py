@@ -20,7 +20,8 @@ from fogproof.scene.scenes import Scene
 
 def read_scene(path: str | Path) -> Scene:
     """Read a scene from a TOML file. Every fault is a `FogproofError` that names the file and the key."""
-    return read_fields({"scene": Scene}, {"scene": _table(Path(path))}, str(path))["scene"]
+    scene: Scene = read_fields({"scene": Scene}, {"scene": _table(Path(path))}, str(path))["scene"]
+    return scene
 
 
 def read_image_scene(path: str | Path) -> ImageScene:
@@ -29,7 +30,8 @@ def read_image_scene(path: str | Path) -> ImageScene:
     if "camera" not in table:
         fix = "add a [camera] table: kind, origin, target, film = { width, height }"
         raise InvalidInputError(f"{path}: camera is missing; {fix}", "camera")
-    return read_fields({"scene": ImageScene}, {"scene": table}, str(path))["scene"]
+    scene: ImageScene = read_fields({"scene": ImageScene}, {"scene": table}, str(path))["scene"]
+    return scene
 
 
 def _table(path: Path) -> dict[str, Any]:
