@@ -12,6 +12,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from fogproof.errors import InvalidInputError, InvalidValueError, shorten
 from fogproof.input_files import read_text
 from fogproof.scene.image_scenes import ImageScene
@@ -62,7 +64,8 @@ def read_fields(types: dict[str, Any], data: Any, origin: str) -> dict[str, Any]
     if not isinstance(data, dict):
         raise InvalidInputError(f"{origin}: must be a table of keys, got {shorten(data)}")
     try:
-        model = input_model(types).model_validate_json(json.dumps(_with_infinities(data)))
+        with np.errstate(all="ignore"):  # a length that overflows is judged as the infinity that it is
+            model = input_model(types).model_validate_json(json.dumps(_with_infinities(data)))
     except pydantic.ValidationError as error:
         raise _complaint(error, data, origin) from None
     return {name: getattr(model, name) for name in types}
