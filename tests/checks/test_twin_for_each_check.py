@@ -308,6 +308,17 @@ def test_of_comparisons():
     assert right.outcome == "not rejected", str(right)
 
 
+def test_of_calls_of_a_few_realisations():
+    """Asked for less than a hundred at once it is off by as much as a hundred thousand others hide."""
+    verdict = check_estimator(lambda rng, n: rng.random(n) + (n < 100), 0.5, samples=2 * 65_536, alpha=1e-9)
+    assert rejecting(verdict) == {"scatter of calls"}, str(verdict)
+
+
+def test_of_one_that_never_varies():
+    verdict = compare_estimators(lambda rng, n: np.full(n, 0.5), lambda rng, n: rng.random(n), samples=N)
+    assert verdict.outcome == "inconclusive", str(verdict)
+
+
 def test_of_programs_and_streams():
     def biased(rng, n):
         return rng.random(n).mean() + 0.5 * (n > 500)
