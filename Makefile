@@ -8,7 +8,7 @@ BIN    := $(VENV)/bin
 export OPENBLAS_NUM_THREADS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help verify gallery study test lint format calibrate field-bugs repeat families oracle-docs docs sdist fuzz-oracle oracle-hard kill-study torture golden bench mutants mutants-sample clean
+.PHONY: help verify gallery study test lint format calibrate field-bugs repeat families oracle-docs docs sdist fuzz-oracle oracle-hard kill-study torture try-wheel golden bench mutants mutants-sample clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -20,7 +20,7 @@ gallery: $(VENV)/.installed  ## the theory in pictures; the page lands in build/
 	$(BIN)/fogproof gallery -o build/gallery
 
 test: $(VENV)/.installed-test  ## the project's own tests
-	$(BIN)/python -m pytest --numprocesses auto
+	$(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
 lint: $(VENV)/.installed-lint  ## ruff, mypy and the import contracts
 	$(BIN)/ruff check .
@@ -70,6 +70,9 @@ torture: $(VENV)/.installed-test  ## nothing lost, nothing silent: kills, full d
 	$(BIN)/python tools/fuzz_oracle.py --lines 100000 --mostly-right
 	$(BIN)/python tools/fuzz_files.py
 	$(BIN)/python tools/fuzz_commands.py
+
+try-wheel: $(VENV)/bin/python  ## the built wheel in a fresh environment: right samplers pass, wrong ones fail, in every way to run tests
+	$(BIN)/python tools/try_wheel.py
 
 golden: $(VENV)/.installed-test  ## prove the golden tables again, by ball arithmetic
 	$(BIN)/python tools/make_golden.py --check

@@ -157,6 +157,9 @@ def _cost(declared: Declared) -> list[CheckedQuantity]:
 def _exact(name: str, reference: Reference | float, channels: int | None) -> tuple[np.ndarray, np.ndarray]:
     reference = Reference.of(name, reference)
     value, error = np.broadcast_arrays(np.atleast_1d(reference.value), np.atleast_1d(reference.error))
+    if value.ndim > 1:
+        rule = "must be a number or (channels,)"
+        raise InvalidValueError(name, rule, f"shape {value.shape}", "an image becomes one by reshape(-1, channels)")
     for part, array in ((name, value), (f"{name}: error", error)):
         require(part, array, np.isfinite(array), "must be finite", "nothing can be held to a value that is not known")
     if name != "reference":

@@ -88,7 +88,7 @@ def call(what: str, function: Callable[..., Any], *arguments: Any) -> Any:
         return function(*arguments)
     except FogproofError:
         raise
-    except Exception as error:
+    except (Exception, SystemExit) as error:  # what ends a program must not end whoever checks it
         raise SubjectError(f"{what} raised {type(error).__name__}: {error}", what) from error
 
 
