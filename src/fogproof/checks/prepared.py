@@ -23,7 +23,7 @@ from fogproof.checks.hints import cube_map, supported, why_not_breaks, why_not_i
 from fogproof.checks.jacobian import jacobian_agreement
 from fogproof.checks.mixture import MixtureTest
 from fogproof.checks.normalisation import FLOOR, albedo, mean_cosine, normalisation
-from fogproof.checks.probes import precision_agreement, reference_agreement, support_of_eval
+from fogproof.checks.probes import pdf_twice, precision_agreement, reference_agreement, support_of_eval
 from fogproof.checks.promises import at_any_atom, inside, usual_labels
 from fogproof.checks.purity import purity
 from fogproof.checks.statistics.repeats import KEPT, expected_repeats
@@ -234,6 +234,7 @@ def _questions(subject: Subject, pilot: Pilot, seed: int) -> list[Finding]:
         findings += [*purity(subject, uniforms), edge_uniforms(subject, pilot.labels)]
     if subject.reference is not None and len(pilot.points):
         findings.append(reference_agreement(subject, pilot.points))
+    findings += pdf_twice(subject, pilot.points)
     if subject.eval is not None:
         findings.append(support_of_eval(subject, pilot.points))
     return findings
