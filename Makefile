@@ -8,7 +8,7 @@ BIN    := $(VENV)/bin
 export OPENBLAS_NUM_THREADS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help verify gallery study test lint format calibrate field-bugs repeat families oracle-docs docs sdist fuzz-oracle oracle-hard kill-study torture try-wheel golden bench mutants mutants-sample clean
+.PHONY: help verify gallery study test lint format calibrate field-bugs repeat families oracle-docs docs sdist fuzz-oracle oracle-hard kill-study torture findings languages try-wheel golden bench mutants mutants-sample clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -70,6 +70,12 @@ torture: $(VENV)/.installed-test  ## nothing lost, nothing silent: kills, full d
 	$(BIN)/python tools/fuzz_oracle.py --lines 100000 --mostly-right
 	$(BIN)/python tools/fuzz_files.py
 	$(BIN)/python tools/fuzz_commands.py
+
+findings: $(VENV)/.installed-test  ## what the checks found in Mitsuba, measured again without them; rewrites docs/findings.md
+	$(BIN)/python tools/findings.py
+
+languages: $(VENV)/.installed-test  ## the examples in C++, Rust, Go and JavaScript, right and broken, under 100 seeds
+	$(BIN)/python tools/languages.py
 
 try-wheel: $(VENV)/bin/python  ## the built wheel in a fresh environment: right samplers pass, wrong ones fail, in every way to run tests
 	$(BIN)/python tools/try_wheel.py
