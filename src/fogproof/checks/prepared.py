@@ -23,7 +23,7 @@ from fogproof.checks.hints import cube_map, supported, why_not_breaks, why_not_i
 from fogproof.checks.jacobian import jacobian_agreement
 from fogproof.checks.mixture import MixtureTest
 from fogproof.checks.normalisation import FLOOR, albedo, mean_cosine, normalisation
-from fogproof.checks.probes import precision_agreement, reference_agreement, support_of_eval
+from fogproof.checks.probes import pdf_twice, precision_agreement, reference_agreement, support_of_eval
 from fogproof.checks.promises import at_any_atom, inside, usual_labels
 from fogproof.checks.purity import purity
 from fogproof.checks.statistics.repeats import KEPT, expected_repeats
@@ -234,6 +234,7 @@ def _questions(subject: Subject, pilot: Pilot, seed: int) -> list[Finding]:
         findings += [*purity(subject, uniforms), edge_uniforms(subject, pilot.labels)]
     if subject.reference is not None and len(pilot.points):
         findings.append(reference_agreement(subject, pilot.points))
+    findings += pdf_twice(subject, pilot.points)
     if subject.eval is not None:
         findings.append(support_of_eval(subject, pilot.points))
     return findings
@@ -281,7 +282,7 @@ def _by_labels(
     """Return what is to be judged by labels, because no quadrature knows the density."""
     wanted = int(np.clip(samples // 8, PILOT, _LARGE_PILOT))
     points = pilot.points
-    if wanted > PILOT:
+    if wanted > PILOT and subject.pilot is None:
         points = np.concatenate([points, _pilot(subject, seed, 1, wanted - PILOT).points])
     law = subject.domain.law(points)
     mixture = MixtureTest.of(subject, law, points, seed, samples).wider(points)
@@ -327,7 +328,7 @@ def _counter(
 
 
 def _pilot(subject: Subject, seed: int, index: int = 0, n: int = PILOT) -> Pilot:
-    draw = subject.draw(batch_generator(seed, "samples", 0, index), n)
+    draw = subject.draw(batch_generator(seed, "samples", 0, index), subject.pilot or n)
     good = inside(subject, draw)
     for at in subject.at_atom(draw.x).values():
         good = good & ~at
