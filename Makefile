@@ -8,7 +8,7 @@ BIN    := $(VENV)/bin
 export OPENBLAS_NUM_THREADS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help verify gallery study test lint format calibrate field-bugs repeat families oracle-docs fuzz-oracle oracle-hard kill-study torture golden bench mutants mutants-sample clean
+.PHONY: help verify gallery study test lint format calibrate field-bugs repeat families oracle-docs docs sdist fuzz-oracle oracle-hard kill-study torture try-wheel golden bench mutants mutants-sample clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -20,7 +20,7 @@ gallery: $(VENV)/.installed  ## the theory in pictures; the page lands in build/
 	$(BIN)/fogproof gallery -o build/gallery
 
 test: $(VENV)/.installed-test  ## the project's own tests
-	$(BIN)/python -m pytest --numprocesses auto
+	$(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
 lint: $(VENV)/.installed-lint  ## ruff, mypy and the import contracts
 	$(BIN)/ruff check .
@@ -71,6 +71,9 @@ torture: $(VENV)/.installed-test  ## nothing lost, nothing silent: kills, full d
 	$(BIN)/python tools/fuzz_files.py
 	$(BIN)/python tools/fuzz_commands.py
 
+try-wheel: $(VENV)/bin/python  ## the built wheel in a fresh environment: right samplers pass, wrong ones fail, in every way to run tests
+	$(BIN)/python tools/try_wheel.py
+
 golden: $(VENV)/.installed-test  ## prove the golden tables again, by ball arithmetic
 	$(BIN)/python tools/make_golden.py --check
 
@@ -80,6 +83,17 @@ mutants: $(VENV)/.installed-test  ## realistic errors planted in our own source,
 
 mutants-sample: $(VENV)/.installed-test  ## thirty of them, drawn by SEED
 	$(BIN)/python tools/mutants --sample 30 --seed $(or $(SEED),1)
+
+docs: $(VENV)/.installed-docs  ## the documentation as a site that needs no network, in build/site
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict
+
+sdist: $(VENV)/.installed-test  ## what is published, unpacked, passes its own tests
+	rm -rf build/sdist && mkdir -p build/sdist
+	$(BIN)/python -m pip install --quiet build
+	$(BIN)/python -m build --sdist --outdir build/sdist .
+	cd build/sdist && tar xzf *.tar.gz && cd fogproof-*/ && $(PYTHON) -m venv .venv && \
+		.venv/bin/python -m pip install --quiet --upgrade 'pip>=25.1' && .venv/bin/python -m pip install --quiet . --group test && \
+		.venv/bin/python -m pytest -q tests/oracle/test_transmittance.py tests/oracle/test_airlight.py tests/scene tests/house
 
 clean:  ## remove the environment and everything built
 	rm -rf $(VENV) build
@@ -94,6 +108,10 @@ $(VENV)/.installed: $(VENV)/bin/python pyproject.toml
 
 $(VENV)/.installed-test: $(VENV)/.installed
 	$(BIN)/python -m pip install --quiet --group test
+	@touch $@
+
+$(VENV)/.installed-docs: $(VENV)/.installed
+	$(BIN)/python -m pip install --quiet --group docs
 	@touch $@
 
 $(VENV)/.installed-lint: $(VENV)/.installed-test

@@ -64,9 +64,9 @@ from fogproof.analytic.scene_radiance import radiance
 from fogproof.analytic.sky.colour import sky_colour, sun_colour
 from fogproof.analytic.sky.rayleigh_atmosphere import air_cross_section, air_optical_depth, plane_parallel_sky
 from fogproof.analytic.variance.airlight import airlight_second_moment
+from fogproof.analytic.variance.fog import ambient_fog_variance
 from fogproof.analytic.variance.single_scattering import single_scattering_second_moment, single_scattering_variance
 from fogproof.analytic.variance.transmittance import (
-    ambient_fog_variance,
     transmittance_lookups,
     transmittance_second_moment,
     transmittance_variance,

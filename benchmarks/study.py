@@ -22,7 +22,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fogproof.checks import batch_generator
+from fogproof.checks.streams import batch_generator
 from fogproof.study.aggregate import levels_of
 from fogproof.study.batches import BatchResult, draw_batch, moments_of
 from fogproof.study.cells import Cell, cells_of, prepare

@@ -72,6 +72,8 @@ RIGHT: dict[str, Callable[[int, dict[str, Any]], Verdict]] = {
     "standard errors of five": lambda n, o: check_estimator(_reported, 1.0, samples=n, **o),
     "nine channels": lambda n, o: check_estimator(lambda r, m: r.exponential(size=(m, 9)), np.ones(9), samples=n, **o),
     "resolution": lambda n, o: check_estimator(_exponential, 1.0, resolution=0.2, samples=n, **o),
+    "enough for calls to be compared": lambda n, o: check_estimator(_exponential, 1.0, samples=4 * n, **o),
+    "such of two values": lambda n, o: check_estimator(lambda r, m: (r.random(m) < 0.3) * 1.0, 0.3, samples=4 * n, **o),
     "hits against a continuous law": lambda n, o: compare_estimators(_rare_hits, _thinned, samples=n, **o),
     "two of hits": lambda n, o: compare_estimators(_hits, _hits, samples=n, **o),
     "exponential against uniform": lambda n, o: compare_estimators(

@@ -7,7 +7,7 @@ import numpy as np
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.analytic.geometry.convex_shapes import size_of, through
 from fogproof.analytic.media.coefficients import is_uniform
-from fogproof.analytic.rays.transmittance import thickness
+from fogproof.analytic.media.thickness import thickness
 from fogproof.scene import AnyMedium, Ray
 from fogproof.scene.shapes import Shape
 

@@ -68,7 +68,8 @@ def integrate_panels(
     weight  (p,) of the pieces; what is missing to 1 counts as error
     jumps   whether the integrand may jump within pieces
     """
-    parts = np.clip(np.ceil(span / WIDEST), 1, FIRST).astype(int)
+    # A length that has left binary64 gives no number, which the caller refuses by name.
+    parts = np.where(np.isnan(span), 1, np.clip(np.ceil(span / WIDEST), 1, FIRST)).astype(int)
     piece = np.repeat(np.arange(len(span)), parts)
     width = span[piece] / parts[piece]
     step = np.arange(len(piece)) - np.repeat(np.cumsum(parts) - parts, parts)

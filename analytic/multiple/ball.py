@@ -24,7 +24,7 @@ from fogproof.analytic.multiple.ball_solution import (
 from fogproof.analytic.multiple.isotropic_modes import isotropic_modes
 from fogproof.analytic.multiple.legendre_modes import complex_legendre_modes
 from fogproof.analytic.multiple.orders import taylor_coefficients
-from fogproof.analytic.multiple.scattering_arguments import checked_albedo, checked_count, checked_length
+from fogproof.analytic.multiple.scattering_arguments import DEEPEST, checked_albedo, checked_count, checked_length
 from fogproof.analytic.multiple.slab_modes import quadrature
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError
@@ -179,6 +179,7 @@ def _radiance(c: Any, ball: BallSolution, places: np.ndarray, n: int) -> np.ndar
 def _compare(c: np.ndarray, R: np.ndarray, places: np.ndarray, evaluate: Evaluate) -> Reference:
     """Return the values for every ball and place, and their errors from coarser solutions."""
     value, error = np.empty(c.shape), np.empty(c.shape)
+    R, places = _at_most_deepest(R, places)
     for one_c, one_R in set(zip(c.ravel().tolist(), R.ravel().tolist(), strict=True)):
         here = (c == one_c) & (one_R == R)
         with np.errstate(under="ignore"):
@@ -186,6 +187,12 @@ def _compare(c: np.ndarray, R: np.ndarray, places: np.ndarray, evaluate: Evaluat
             fine, coarse = (evaluate(one_c, _solve(one_c, one_R, finest, n), places[here], n) for n in (FINE, COARSE))
         value[here], error[here] = fine, np.abs(fine - coarse) + ROUNDING
     return Reference(value, error, METHOD, SOURCE)
+
+
+def _at_most_deepest(R: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return radii and places, scaled down where more of the same changes nothing."""
+    scale = np.minimum(1.0, DEEPEST / np.maximum(R, 1.0))
+    return np.minimum(R, DEEPEST), np.minimum(places * scale, np.minimum(R, DEEPEST))
 
 
 def _solve(c: float, radius: float, finest: float, n: int) -> BallSolution:
@@ -212,10 +219,12 @@ def _one_radius(radius: Any) -> np.ndarray:
 def _orders(
     R: float, places: np.ndarray, count: int, evaluate: Evaluate, known: Any, straight: Any, collides: Any
 ) -> Reference:
-    nodes = quadrature(_finest(float(R), places.ravel()), COMPLEX)
+    radius, places = _at_most_deepest(np.asarray(R), places)
+    R = float(radius)
+    nodes = quadrature(_finest(R, places.ravel()), COMPLEX)
 
     def solution(albedos: np.ndarray) -> np.ndarray:
-        balls = [solve_ball(complex_legendre_modes(c, np.ones(1), *nodes), float(R)) for c in albedos]
+        balls = [solve_ball(complex_legendre_modes(c, np.ones(1), *nodes), R) for c in albedos]
         found = [evaluate(c, ball, places.ravel(), COMPLEX) for c, ball in zip(albedos, balls, strict=True)]
         return np.stack(found, axis=-1).reshape(*places.shape, len(albedos))
 

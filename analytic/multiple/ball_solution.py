@@ -93,7 +93,7 @@ def _seen(ball: BallSolution, impact: np.ndarray, n: int) -> np.ndarray:
 
 def mean_transmittance(radius: float) -> float:
     """Return the share of the light entering a ball that crosses it without collision: 2 (1 - (1 + x) e^-x)/x^2, x = 2 R."""
-    x = 2 * radius
+    x = 2 * min(radius, 1e200)  # beyond, it underflows to 0 all the same
     if x < 0.5:
         terms = [2 * (-x) ** n / (math.factorial(n) * (n + 2)) for n in range(20)]
         return math.fsum(terms)

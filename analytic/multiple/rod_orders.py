@@ -26,6 +26,9 @@ THIN, FEWEST, TERMS = 2.0**-12, 10, 12
 What is left out, relative: 2^-12 for each term, and 2^-10 for each scattering that has to happen in the same of 2^10 parts.
 """
 
+DEEPEST = 1e6
+"""Length beyond which a rod sends back what an endless one does after a number of scatterings, and passes nothing."""
+
 RENEWED = 2
 """EPS of relative error for each doubling and factor of a product; a fifteenth of that was the most to be seen."""
 
@@ -36,7 +39,7 @@ def rod_orders(L: np.ndarray, g: np.ndarray, count: int) -> tuple[np.ndarray, np
     L  (...) length in mean free paths
     g  (...) mean cosine
     """
-    a, b = (1 + g) / 2, (1 - g) / 2
+    a, b, L = (1 + g) / 2, (1 - g) / 2, np.minimum(L, DEEPEST)
     times = max(FEWEST, math.ceil(math.log2(max(float(np.max(L, initial=0.0)), THIN) / THIN)))
     with np.errstate(under="ignore"):
         R, T = _thin(L * 2.0**-times, a, b, count)

@@ -47,8 +47,12 @@ def checked_length(name: str, value: Any) -> np.ndarray:
     return array
 
 
+MOST = 10_000
+"""Scatterings or flights asked for at most: as many values, and solutions to find them, have to fit into memory."""
+
+
 def checked_count(name: str, value: Any) -> int:
-    """Return a whole number >= 0."""
-    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 0:
-        raise InvalidValueError(name, "must be a whole number >= 0", value)
+    """Return a whole number in [0, MOST]."""
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or not 0 <= value <= MOST:
+        raise InvalidValueError(name, f"must be a whole number in [0, {MOST}]", value)
     return int(value)

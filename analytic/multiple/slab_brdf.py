@@ -9,14 +9,22 @@ Source: Chandrasekhar 1960, Radiative Transfer, chapter 8 and section 62.
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.analytic.declaration import quantity
+from fogproof.analytic.multiple.half_space import half_space_brdf
 from fogproof.analytic.multiple.isotropic_modes import isotropic_modes
-from fogproof.analytic.multiple.scattering_arguments import checked_albedo, checked_cosine, checked_length, seen_at
+from fogproof.analytic.multiple.scattering_arguments import (
+    DEEPEST,
+    checked_albedo,
+    checked_cosine,
+    checked_length,
+    seen_at,
+)
 from fogproof.analytic.multiple.slab import checked_phase
 from fogproof.analytic.multiple.slab_by_doubling import is_isotropic
 from fogproof.analytic.multiple.slab_directions import Beams, Side, directional
@@ -37,6 +45,12 @@ RELATIVE_ROUNDING = 1e-13
 
 VIEWS = 24
 """Pairs of directions evaluated at a time where the phase function is not isotropic."""
+
+DEEP, FADED = 1e3, 60.0
+"""Thickness beyond which, and times k, a slab is taken for an endless one."""
+
+HOPF = 0.71044608959876307
+"""q(infinity), the extrapolated end of an atmosphere that absorbs nothing."""
 
 MANY = 0.5
 """Albedo from which on the mode of the smallest k is taken out of E."""
@@ -65,8 +79,9 @@ def slab_brdf(
     azimuth  (...) between the horizontal directions of travel before and after [rad]; 0 goes on ahead. It may be left out for
              isotropic scattering only; all five broadcast
 
-    For isotropic scattering it is c (X(mu0) X(mu) - Y(mu0) Y(mu))/(4 pi (mu0 + mu)), with an error of about 1e-13 + 4 eps tau,
-    relative. For other phase functions light scattered once comes from the phase function itself, the rest by doubling.
+    For isotropic scattering it is c (X(mu0) X(mu) - Y(mu0) Y(mu))/(4 pi (mu0 + mu)), with an error of about 1e-13, relative,
+    and 4 eps tau where tau is large but too little is absorbed for the slab to look endless. For other phase functions light
+    scattered once comes from the phase function itself, the rest by doubling.
     Errors are estimated from coarser solutions.
     Source: Chandrasekhar 1960, Radiative Transfer, section 62; de Haan, Bosma & Hovenier 1987; Nakajima & Tanaka 1988.
     """
@@ -104,11 +119,15 @@ def _kernel(albedo: Any, tau: Any, mu0: Any, mu: Any, phase: Any, azimuth: Any, 
     checked = checked_albedo(albedo), checked_length("tau", tau), checked_cosine("mu0", mu0), checked_cosine("mu", mu)
     arrays = np.broadcast_arrays(*checked, angle)
     c, b, ins, outs, turn = (x.ravel() for x in arrays)
+    deeper, b = np.maximum(b / DEEPEST, 1.0), np.minimum(b, DEEPEST)
     value, error = np.zeros(c.shape), np.zeros(c.shape)
     with np.errstate(under="ignore", over="ignore", divide="ignore"):
         for one_c, one_b in set(zip(c.tolist(), b.tolist(), strict=True)):
             here = np.flatnonzero((c == one_c) & (b == one_b))
             if one_c == 0 or one_b == 0:
+                continue
+            if isotropic and side == "reflected" and _is_deep(one_c, one_b):
+                value[here], error[here] = _deep_brdf(one_c, one_b, ins[here], outs[here])
                 continue
             if isotropic and side == "reflected":
                 fine, coarse = (_brdf(one_c, one_b, ins[here], outs[here], n) for n in (FINE, COARSE))
@@ -120,7 +139,29 @@ def _kernel(albedo: Any, tau: Any, mu0: Any, mu: Any, phase: Any, azimuth: Any, 
                 some = here[(which.ravel() >= first) & (which.ravel() < first + VIEWS)]
                 beams = Beams(ins[some], outs[some], turn[some])
                 value[some], error[some] = directional(one_c, one_b, beams, phase, side)
+    if side == "transmitted":  # what passes is nothing, or if nothing is absorbed as 1/tau
+        value, error = value / deeper, error / deeper + TINY * (deeper > 1)
     return Reference(value.reshape(arrays[0].shape), error.reshape(arrays[0].shape), METHOD, SOURCE)
+
+
+def _is_deep(c: float, tau: float) -> bool:
+    """Return whether a slab reflects as an endless one, but for what passes it where nothing is absorbed.
+
+    The slowest mode falls like exp(-k tau) with k^2 >= 1 - c, and there and back again.
+    """
+    return tau > DEEP and (c == 1 or math.sqrt(1 - c) * tau > FADED)
+
+
+def _deep_brdf(c: float, tau: float, mu0: np.ndarray, mu: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the half space's BRDF, less the BTDF H(mu0) H(mu)/(4 pi (tau + 2 q)) at albedo 1; q is Hopf's constant.
+
+    Source: van de Hulst 1980, Multiple Light Scattering, sections 5.2 and 14.1.
+    """
+    found = half_space_brdf(c, mu0, mu)
+    if c < 1:
+        return found.value, found.error
+    passed = found.value * (mu0 + mu) / (tau + 2 * HOPF)  # c H H/(4 pi (mu0 + mu)) is the half space's
+    return found.value - passed, found.error * (1 + 2 / tau) + 4 * EPS * found.value + TINY
 
 
 def _brdf(c: float, tau: float, mu0: np.ndarray, mu: np.ndarray, n: int) -> np.ndarray:

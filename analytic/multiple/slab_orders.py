@@ -10,7 +10,13 @@ from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.analytic.declaration import quantity
 from fogproof.analytic.multiple.legendre_modes import complex_legendre_modes
 from fogproof.analytic.multiple.orders import taylor_coefficients
-from fogproof.analytic.multiple.scattering_arguments import checked_cosine, checked_count, checked_length, seen_at
+from fogproof.analytic.multiple.scattering_arguments import (
+    DEEPEST,
+    checked_cosine,
+    checked_count,
+    checked_length,
+    seen_at,
+)
 from fogproof.analytic.multiple.slab import slab_reflectance, slab_transmittance
 from fogproof.analytic.multiple.slab_modes import SOURCE, quadrature
 from fogproof.analytic.multiple.slab_solution import leaving_slab
@@ -74,14 +80,15 @@ def _orders(tau: Any, mu0: Any, count: Any, phase: Any, side: Side, real: Any) -
     moments = phase_legendre_moments(phase or Isotropic(), 2 * MOST_NODES)
     chi = moments.value
     n = int(np.clip(1 + np.flatnonzero(np.abs(chi) > NEGLIGIBLE)[-1] // 2, FEWEST_NODES, MOST_NODES))
-    looked = seen_at(mu0, float(b), GRAZING)
-    nodes = quadrature(min(float(b), 10 * float(np.min(looked, initial=1.0))), n)
+    deep = min(float(b), DEEPEST)
+    looked = seen_at(mu0, deep, GRAZING)
+    nodes = quadrature(min(deep, 10 * float(np.min(looked, initial=1.0))), n)
     with np.errstate(over="ignore", under="ignore"):
         straight, collides = np.exp(-b / mu0), -np.expm1(-b / mu0)
 
     def at(c: complex) -> np.ndarray:
         modes = complex_legendre_modes(c, chi[: 2 * n], *nodes) if b > 0 else None
-        return getattr(leaving_slab(modes, float(b), looked.ravel()), side)
+        return getattr(leaving_slab(modes, deep, looked.ravel()), side)
 
     def solution(albedos: np.ndarray) -> np.ndarray:
         return np.stack([at(c) for c in albedos], axis=-1).reshape(*mu0.shape, len(albedos))

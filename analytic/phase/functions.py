@@ -23,6 +23,9 @@ from fogproof.scene.kinds import given, module_of
 from fogproof.scene.phase import PhaseFunction, PhaseFunctionField
 from fogproof.validate import as_float_array, require
 
+HIGHEST = 10**6
+"""Highest order of a Legendre moment that is answered."""
+
 BLOCK = 8192
 """Elements evaluated at a time: the temporaries of a Lorenz-Mie series of them stay in the cache."""
 
@@ -118,13 +121,13 @@ def phase_legendre_moments(phase: PhaseFunctionField, count: Count) -> Reference
     """Return chi_l = 2 pi int_-1^1 f_p(mu) P_l(mu) dmu for l = 0 … count, of shape (count + 1,).
 
     phase  a phase function of the scene description
-    count  the highest order l, a whole number >= 0
+    count  the highest order l, a whole number in [0, 10^6]
 
     chi_0 is 1, chi_1 the mean cosine, and f_p = sum_l (2 l + 1)/(4 pi) chi_l P_l(mu). Closed forms and tables have errors of
     a few l eps; elsewhere the error is estimated, and what the nodes of the quadrature miss of the integral of f_p counts.
     """
-    if isinstance(count, bool) or not isinstance(count, int | np.integer) or count < 0:
-        raise InvalidValueError("count", "must be a whole number >= 0", count)
+    if isinstance(count, bool) or not isinstance(count, int | np.integer) or not 0 <= count <= HIGHEST:
+        raise InvalidValueError("count", f"must be a whole number in [0, {HIGHEST}]", count)
     parts = weighted_parts(phase)
     value, error = (np.array(x) for x in _sum(parts, "legendre_moments", int(count)))
     value[0], error[0] = 1.0, 0.0

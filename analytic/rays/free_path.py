@@ -40,6 +40,7 @@ def free_path(medium: AnyMediumField, ray: Ray, tau: FloatArray) -> Reference:
     Source: elementary; t = 2 tau/(a + sqrt(a^2 + 2 b tau)) and t = (tau/sigma) log1p(k tau/sigma)/(k tau/sigma).
     """
     channels = channels_of(medium)
+    rays_with_channels(ray, None)  # refuses what is no ray
     tau = as_float_array("tau", tau)
     require("tau", tau, (tau >= 0) & np.isfinite(tau), "must be finite and >= 0")
     shape = np.broadcast_shapes(ray.shape, tau.shape)

@@ -9,7 +9,8 @@ A module gives what it can of
     depth_towards(medium, x, w, way)           optical depth of many ways and what they cost, for shadow rays
     bounds(medium, origin, direction, length)  least and greatest extinction along each ray [1/m]
     greatest(medium, shape)                    bound of the extinction in a shape [1/m]
-    feature_size(medium, ray)                  the smallest length over which it changes along a ray [m]
+    feature_size(medium, ray)                  the smallest length over which it changes along a ray [m]; without it, `along` or
+                                               `depth` nothing integrates along a camera ray, as single scattering asks
     walk(medium, ...)                          through its cells, see `tracking.regular`
 
 What it does not give comes from tracking under a majorant, from quadrature, or is refused by name.

@@ -61,23 +61,24 @@ class Bumps:
 
     def reach(self, depth: np.ndarray) -> np.ndarray:
         """Return the distance by Newton's method between brackets that close around it, inf if the depth is never reached."""
-        wanted = np.atleast_1d(np.asarray(depth, dtype=float))
+        wanted = np.asarray(depth, dtype=float).ravel()
+        reached = np.full_like(wanted, np.inf)
+        left = np.flatnonzero(self.depth(np.array(np.inf)) >= wanted)  # those that have not converged yet
         end = max(float((self.middle + 40 * self.width).max()), 0.0)
-        low, high = np.zeros_like(wanted), np.full_like(wanted, end)
+        low, high = np.zeros(len(left)), np.full(len(left), end)
         t = 0.5 * (low + high)
         for _ in range(STEPS):
-            off = self.depth(t) - wanted
+            off = self.depth(t) - wanted[left]
             low, high = np.where(off < 0, t, low), np.where(off < 0, high, t)
             with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
                 step = t - off / self.sigma(t)
-            inside = (step >= low) & (
-                step <= high
-            )  # where it has converged, t is an end of its bracket and stays there
-            last, t = t, np.where(inside, step, 0.5 * (low + high))
-            if np.all(np.abs(t - last) <= 2e-16 * t):
+            last, t = t, np.where((step >= low) & (step <= high), step, 0.5 * (low + high))
+            reached[left] = t
+            going = np.abs(t - last) > 2e-16 * t
+            if not going.any():
                 break
-        escaped = self.depth(np.array(np.inf)) < wanted
-        return np.where(escaped, np.inf, t).reshape(np.shape(depth))
+            left, t, low, high = left[going], t[going], low[going], high[going]
+        return reached.reshape(np.shape(depth))
 
 
 def along(medium: GaussianPuffs, ray: Ray) -> Bumps:

@@ -35,7 +35,10 @@ def feature_size(medium: AnyMedium, ray: Ray) -> float:
     """
     own = given(medium, ROOM, "feature_size")
     if own is None:
-        raise UnsupportedError(f"no step is known for a {type(medium).__name__}: give one", "step")
+        raise UnsupportedError(
+            f"how fine a {type(medium).__name__} is (feature_size) is not known: give a step, where there is one",
+            "step",
+        )
     size: float = own(medium, ray)
     return size
 

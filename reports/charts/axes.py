@@ -34,10 +34,13 @@ class Scale:
     def __call__(self, values: Values) -> np.ndarray:
         """Return where values lie: 0 at low, 1 at high."""
         data = np.asarray(values, dtype=float)
+        place: np.ndarray
         if not self.log:
-            return (data - self.low) / (self.high - self.low)
+            place = (data - self.low) / (self.high - self.low)
+            return place
         with np.errstate(divide="ignore", invalid="ignore"):
-            return (np.log10(data) - log10(self.low)) / (log10(self.high) - log10(self.low))
+            place = (np.log10(data) - log10(self.low)) / (log10(self.high) - log10(self.low))
+            return place
 
     def ticks(self, most: int) -> list[tuple[float, str]]:
         """Return round values within the scale, about `most` of them at most, and their labels."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -58,8 +59,10 @@ class Resolutions:
         top = (legend(sheet, keys, 8, 0, sheet.width - 8) if named else 4.0) + 4
         left = 0.42 * sheet.width
         y = Scale(len(rows), -1) if named else Scale(len(kinds) - 0.5, -0.5)
-        axes = Axes(sheet, (left, top, sheet.width - left - 20, sheet.height - top - 50), spanning(values, log=True), y)
-        axes.frame("smallest error that would have been caught", ticks=(6, 0))
+        across, beyond = _within(values)
+        rows = [(name, kind, min(max(value, across.low), across.high)) for name, kind, value in rows]
+        axes = Axes(sheet, (left, top, sheet.width - left - 20, sheet.height - top - 50), across, y)
+        axes.frame("smallest relative error that would have been caught", ticks=(6, 0))
         for number, (kind, count) in enumerate(zip(kinds, counts, strict=True)):
             at = np.array([(value, y) for y, (_, its, value) in enumerate(rows) if its == kind])
             slope = number + 0.35 - 0.7 * (np.arange(count) + 0.5) / count
@@ -72,5 +75,15 @@ class Resolutions:
             )
         named_kinds = ", ".join(label(kind) for kind in kinds)
         return (
-            f"{len(rows)} passes: errors above {min(values):.2g} to {max(values):.2g} ({named_kinds}) would have shown."
+            f"{len(rows)} passes: errors above {min(values):.2g} to {max(values):.2g} ({named_kinds}) would have shown, "
+            f"relative to what they are errors of.{f' {beyond} lie beyond the axis and are drawn at its end.' if beyond else ''}"
         )
+
+
+def _within(values: Sequence[float]) -> tuple[Scale, int]:
+    """Return a scale that a few far ones do not stretch: three interquartile ranges, a decade at least; and how many are out."""
+    logs = np.log10(values)
+    low, high = np.quantile(logs, [0.25, 0.75])
+    room = max(3 * (high - low), 1.0)
+    inside = logs[(logs >= low - room) & (logs <= high + room)]
+    return spanning(10**inside, log=True), len(values) - len(inside)

@@ -123,4 +123,6 @@ def _font(size: float) -> ImageFont.FreeTypeFont:
     found = importlib.util.find_spec("matplotlib")
     assert found is not None
     assert found.origin is not None
-    return ImageFont.truetype(Path(found.origin).parent / "mpl-data/fonts/ttf/DejaVuSans.ttf", size)
+    return ImageFont.truetype(
+        str(Path(found.origin).parent / "mpl-data/fonts/ttf/DejaVuSans.ttf"), size
+    )  # older ones take no Path

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fogproof.checks import batch_generator
+from fogproof.checks.streams import batch_generator
 from fogproof.errors import InvalidInputError, shorten
 from fogproof.reports.charts.pictures import Picture
 from fogproof.reports.files import write_file

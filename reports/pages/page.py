@@ -14,7 +14,7 @@ from fogproof.reports.charts.p_values import PValueHistogram, PValues
 from fogproof.reports.charts.pictures import Picture, render
 from fogproof.reports.charts.resolutions import Resolutions
 from fogproof.reports.files import write_file
-from fogproof.reports.pages.summaries import blind, catches, needs, systems
+from fogproof.reports.pages.summaries import blind, by_cause, catches, needs, plain, systems
 from fogproof.reports.pages.templates import cases as some_cases
 from fogproof.reports.pages.templates import fill
 from fogproof.reports.records.runs import Case, RunRecord, Status
@@ -69,6 +69,7 @@ def write_page(run: RunRecord, folder: str | Path) -> Path:
         shown=shown,
         counts={status: sum(case.status == status for case in cases) for status in STATUSES},
         systems=systems(run),
+        by_cause=by_cause(cases),
         twins=[case for case in cases if case.twin_result],
         blind=[case for case in cases if blind(case)],
         catches=catches(run),
@@ -144,12 +145,11 @@ def _overview(run: RunRecord) -> Iterable[tuple[str, Any, tuple[float, float]]]:
         yield "p-value-histogram", PValueHistogram(exact), (560, 340)
         yield "p-values", PValues(exact), (560, 420)
     passes = tuple(
-        (case.name, case.verdict.resolution.kind, case.verdict.resolution.value)
+        (case.name, plain(case.verdict.resolution.kind), size)
         for case in run.cases
-        if case.status == "passed"
-        and case.verdict is not None
-        and case.verdict.resolution
-        and 0 < case.verdict.resolution.value < inf
+        if case.status == "passed" and case.verdict is not None and case.verdict.resolution
+        for size in [case.verdict.resolution.relative]
+        if size is not None and 0 < size < inf
     )
     if passes:
         drawing = Resolutions(passes)

@@ -96,6 +96,15 @@ def needs(cases: Sequence[Case]) -> list[Need]:
     return sorted(found, key=lambda need: -sum(term.kept for term in need.plan.terms))
 
 
+def by_cause(cases: Sequence[Case]) -> list[tuple[str, list[Case]]]:
+    """Return the rejected cases by their likely cause, "" for none, the commonest first."""
+    groups: dict[str, list[Case]] = {}
+    for case in cases:
+        if case.status == "rejected":
+            groups.setdefault(case.verdict.cause if case.verdict is not None else "", []).append(case)
+    return sorted(groups.items(), key=lambda pair: -len(pair[1]))
+
+
 def blind(case: Case) -> bool:
     """Return whether the broken twin of a case was run and not rejected."""
     return case.twin_result is not None and case.twin_result.outcome != "rejected"

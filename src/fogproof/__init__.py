@@ -10,27 +10,10 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
+from fogproof import checks as _checks
+from fogproof import domains as _domains
 from fogproof.contracts import Draw, Draws, Estimator, Reference, Sampler
-from fogproof.domains import (
-    Ball,
-    Box,
-    Discrete,
-    Domain,
-    HalfLine,
-    Interval,
-    Law,
-    Product,
-    RealLine,
-    Rectangle,
-    Rotations,
-    SpherePart,
-    SphericalTriangle,
-    Triangle,
-    UnitDisk,
-    UnitHemisphere,
-    UnitSphere,
-    UnitSquare,
-)
+from fogproof.domains import *  # noqa: F403
 from fogproof.errors import FogproofError, InvalidValueError, UnsupportedError
 from fogproof.scene import cameras as _cameras
 from fogproof.scene import lights as _lights
@@ -50,27 +33,7 @@ from fogproof.scene.shapes import HalfSpace, Shape, Slab, Unbounded
 from fogproof.scene.surfaces import *  # noqa: F403
 
 if TYPE_CHECKING:
-    from fogproof.checks import (
-        EffectInterval,
-        Finding,
-        InconclusiveError,
-        Outcome,
-        RejectedError,
-        Resolution,
-        SamplerCheck,
-        Verdict,
-        check_bound,
-        check_convergence,
-        check_estimator,
-        check_family,
-        check_mis,
-        check_reciprocity,
-        check_sampler,
-        check_streams,
-        compare_estimators,
-        fresh_seed,
-        samples_for,
-    )
+    from fogproof.checks import *  # noqa: F403
     from fogproof.gradient_check import check_gradient
     from fogproof.relation_check import check_relations
     from fogproof.runs import Run
@@ -81,68 +44,33 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
-    "Ball",
-    "Box",
-    "Discrete",
-    "Domain",
     "Draw",
     "Draws",
-    "EffectInterval",
     "Estimator",
-    "Finding",
     "FogproofError",
-    "HalfLine",
     "HalfSpace",
     "ImageScene",
-    "InconclusiveError",
-    "Interval",
     "InvalidValueError",
-    "Law",
-    "Outcome",
-    "Product",
     "Ray",
-    "RealLine",
-    "Rectangle",
     "Reference",
-    "RejectedError",
-    "Resolution",
-    "Rotations",
     "Run",
     "Sampler",
-    "SamplerCheck",
     "Scattering",
     "Scene",
     "Shape",
     "Slab",
-    "SpherePart",
-    "SphericalTriangle",
-    "Triangle",
     "Unbounded",
-    "UnitDisk",
-    "UnitHemisphere",
-    "UnitSphere",
-    "UnitSquare",
     "UnsupportedError",
-    "Verdict",
-    "check_bound",
-    "check_convergence",
-    "check_estimator",
-    "check_family",
     "check_gradient",
-    "check_mis",
-    "check_reciprocity",
     "check_relations",
-    "check_sampler",
-    "check_streams",
-    "compare_estimators",
     "estimator_for",
-    "fresh_seed",
     "read_image_scene",
     "read_scene",
     "read_voxel_grid",
-    "samples_for",
 ]
 __all__ += _cameras.__all__
+__all__ += _checks.__all__
+__all__ += _domains.__all__
 __all__ += _lights.__all__
 __all__ += _media.__all__
 __all__ += _occluders.__all__
@@ -150,25 +78,6 @@ __all__ += _phase.__all__
 __all__ += _surfaces.__all__
 
 _LAZY = {
-    "EffectInterval": "fogproof.checks",
-    "Finding": "fogproof.checks",
-    "InconclusiveError": "fogproof.checks",
-    "Outcome": "fogproof.checks",
-    "RejectedError": "fogproof.checks",
-    "Resolution": "fogproof.checks",
-    "SamplerCheck": "fogproof.checks",
-    "Verdict": "fogproof.checks",
-    "check_bound": "fogproof.checks",
-    "check_convergence": "fogproof.checks",
-    "check_estimator": "fogproof.checks",
-    "check_family": "fogproof.checks",
-    "check_mis": "fogproof.checks",
-    "check_reciprocity": "fogproof.checks",
-    "check_sampler": "fogproof.checks",
-    "check_streams": "fogproof.checks",
-    "compare_estimators": "fogproof.checks",
-    "fresh_seed": "fogproof.checks",
-    "samples_for": "fogproof.checks",
     "check_gradient": "fogproof.gradient_check",
     "check_relations": "fogproof.relation_check",
     "Run": "fogproof.runs",
@@ -181,6 +90,8 @@ _SUBPACKAGES = {"adapters", "analytic", "catalogue", "checks", "estimators", "re
 
 
 def __getattr__(name: str) -> Any:
+    if name in _checks.__all__:
+        return getattr(_checks, name)
     if name in _LAZY:
         return getattr(importlib.import_module(_LAZY[name]), name)
     if name in _SUBPACKAGES:
@@ -189,4 +100,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_LAZY, *_SUBPACKAGES})
+    return sorted({*globals(), *_checks.__all__, *_LAZY, *_SUBPACKAGES})

@@ -126,6 +126,10 @@ def _refused(scene: Scene, how: Capabilities) -> str:
             return f"the light of a {kind} arrives from everywhere, which is followed in a homogeneous Medium in a shape only"
         if how.shadow_rays == "ratio" and scene.light.distant and not bounded:
             return f"the way of a {kind}'s light through a {name} without end: give the medium bounds"
+        if not any(given(medium, MEDIA, part) for part in ("along", "depth", "feature_size")):
+            return (
+                f"how fine a {name} is (feature_size) is not known, so its depth along the camera ray is not integrated"
+            )
         ends = bounded or bool(np.isfinite(extent(medium, scene.ray).leave).all())
         if endless and not how.uniform and not (bounded if how.placing == "uniform" else ends):
             return f"light along an endless ray through a {name} without end: give the ray a length"

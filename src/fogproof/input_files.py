@@ -13,22 +13,35 @@ TEXT = 2**26
 """The largest text that is read [bytes]: a scene, a study, a record."""
 
 
-def open_regular(path: str | Path, what: str) -> BufferedReader:
+def open_regular(path: str | Path, what: str, pipes: bool = False) -> BufferedReader:
     """Open a regular file to read, or raise an `InvalidInputError`: a device never ends, and a pipe may never begin.
 
-    what  what the file is, for the message: "the grid"
+    what   what the file is, for the message: "the grid"
+    pipes  whether pipes are waited for and read as well, as a shell's <(command) is one
     """
+    wait = 0 if pipes else getattr(os, "O_NONBLOCK", 0)
     try:
-        file = open(os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)), "rb")  # noqa: SIM115
+        file = open(os.open(path, os.O_RDONLY | wait | getattr(os, "O_BINARY", 0)), "rb")  # noqa: SIM115
     except (OSError, ValueError) as error:  # ValueError: a path with a zero byte
         reason = getattr(error, "strerror", None) or str(error)
         raise InvalidInputError(f"cannot read {what} {path}: {reason}", str(path)) from None
     mode = os.fstat(file.fileno()).st_mode
-    if not stat.S_ISREG(mode):
+    if not stat.S_ISREG(mode) and not (pipes and stat.S_ISFIFO(mode)):
         file.close()
         kind = "a pipe" if stat.S_ISFIFO(mode) else "a device"
         raise InvalidInputError(f"cannot read {what} {path}: it must be a regular file, it is {kind}", str(path))
     return file
+
+
+def read_requests(path: str | Path) -> bytes:
+    """Return a file of requests, which may be a pipe and of any length, or raise an `InvalidInputError` that names it."""
+    with open_regular(path, "the request file", pipes=True) as file:
+        try:
+            return file.read()
+        except OSError as error:
+            raise InvalidInputError(
+                f"cannot read the request file {path}: {error.strerror or error}", str(path)
+            ) from None
 
 
 def size_of(file: BufferedReader) -> int:

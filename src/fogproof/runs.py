@@ -12,7 +12,9 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
-from fogproof.checks import Verdict, batch_generator, fresh_seed, jsonable
+from fogproof.checks import Verdict, fresh_seed
+from fogproof.checks.streams import batch_generator
+from fogproof.checks.verdict import jsonable
 from fogproof.errors import InvalidValueError
 from fogproof.validate import number
 from fogproof.verify import ALPHA, SCHEMA, environment
@@ -138,7 +140,7 @@ def run_record(
     cases: list[dict[str, Any]], *, kind: str, seed: int, alpha: float, command: str, started: str, seconds: float
 ) -> dict[str, Any]:
     """Return the record of cases that no catalogue knows."""
-    return jsonable(
+    table: dict[str, Any] = jsonable(
         {
             "schema": SCHEMA,
             "kind": kind,
@@ -154,6 +156,7 @@ def run_record(
             "cases": cases,
         }
     )
+    return table
 
 
 def _exit_code(cases: Iterable[dict[str, Any]]) -> int:

@@ -130,7 +130,7 @@ def test_the_three_ways_to_judge_a_mean_have_the_shares_that_are_planned_with():
     assert mean_of(gamma, 1.0, samples=5000, bounds=(0, 100)).alpha == pytest.approx(usual, rel=1e-12)
     dark = mean_of(lambda rng, n: np.zeros(n), 0.3, samples=5000, bounds=(0, 1))
     assert (dark.outcome, dark.alpha) == ("rejected", pytest.approx(facts, rel=1e-12))
-    rare = mean_of(lambda rng, n: 50 * (rng.random(n) < 2e-3) * rng.random(n), 0.01, samples=20_000, nonnegative=True)
+    rare = mean_of(lambda rng, n: 50 * (rng.random(n) < 2e-3) * rng.random(n), 0.001, samples=20_000, nonnegative=True)
     assert (rare.outcome, rare.alpha) == ("rejected", pytest.approx(bets, rel=1e-12))
 
 

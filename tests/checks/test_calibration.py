@@ -4,7 +4,9 @@ The short form of `tools/calibrate.py`. Fresh seeds; a band is crossed with prob
 """
 
 import pytest
-from calibrate import LEVEL, RIGHT, SUBJECTS, estimator_tally, kind_of, sampler_tally, uniformity, whole_verdicts
+from calibrate import estimator_tally, sampler_tally, whole_verdicts
+from calibrate_subjects import RIGHT, SUBJECTS
+from calibrate_tally import LEVEL, kind_of, uniformity
 
 from fogproof.checks import Finding, fresh_seed
 

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from fogproof import Interval, check_sampler
-from fogproof.checks import check_reciprocity, within
+from fogproof.checks import check_reciprocity
+from fogproof.checks.limits import within
 from fogproof.errors import SubjectError
 
 

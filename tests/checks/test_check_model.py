@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from fogproof.checks.density.charts import chart_of
-from fogproof.checks.density.grid import blurred, grid_of
+from fogproof.checks.density.grid import grid_of
 from fogproof.checks.density.model import Effort, integrated, looked_at
+from fogproof.checks.density.rounding import Rounded, blurred
 from fogproof.checks.subject import nudged
 from fogproof.domains import Interval, UnitDisk, UnitHemisphere, UnitSphere
 
@@ -133,7 +134,7 @@ def test_rounding_of_single_precision_points_is_part_of_the_cells_doubt():
     sine = np.sqrt(1 - mu * mu)
     points = np.stack([sine, np.zeros(2048), mu], axis=-1)
     chart, _, grid = sphere_model(pdf, POLE)
-    coarse = blurred(grid, chart, points, nudged(points, 2.0**-24), 2.0**-24)
-    fine = blurred(grid, chart, points, nudged(points, 2.0**-53), 2.0**-53)
+    coarse = blurred(grid, chart, Rounded(points, nudged(points, 2.0**-24), None, 2.0**-24))
+    fine = blurred(grid, chart, Rounded(points, nudged(points, 2.0**-53), None, 2.0**-53))
     assert coarse.marginals[0].blur.max() > 1e-4
     assert fine.marginals[0].blur.max() < 1e-9

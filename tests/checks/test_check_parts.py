@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from fogproof import HalfLine, InvalidValueError, UnitSphere, check_sampler
-from fogproof.checks import SamplerCheck, Subject
+from fogproof.checks import SamplerCheck
 from fogproof.checks.escalation import EARLY, stages
+from fogproof.checks.subject import Subject
 
 SPHERE = Subject(
     lambda u: np.stack(

@@ -8,7 +8,10 @@ from field_bugs import BUGS
 from field_bugs.bug import directions, even, hg
 
 from fogproof import HalfLine, Interval, UnitSphere, UnitSquare, check_sampler
+from fogproof.checks.diagnosis import holes
+from fogproof.checks.diagnosis.diagnose import _setting
 from fogproof.checks.diagnosis.factors import named_factor
+from fogproof.checks.subject import Subject
 
 N = 200_000
 
@@ -105,3 +108,21 @@ def test_the_line_that_reproduces_a_verdict_runs():
     again = eval(verdict.reproduce, {**vars(fogproof), "check_sampler": check_sampler, "sample": sample, "pdf": pdf})
     assert verdict.outcome == "rejected"
     assert [(f.check, f.p_value) for f in again.findings] == [(f.check, f.p_value) for f in verdict.findings]
+
+
+def test_the_claim_is_asked_once_at_the_points_that_every_hypothesis_weighs():
+    points, asked = UnitSphere(), []
+
+    def pdf(x):
+        asked.append(len(x))
+        return np.full(len(x), 0.25 / np.pi)
+
+    subject = Subject(lambda u: points.law(np.empty((0, 3))).place(u), pdf, points, 2)
+    setting = _setting(subject, 1 << 12, 1)
+    whole = setting.contrast.points
+    first = setting.p(whole)
+    for hypothesis in holes.hypotheses(setting):
+        hypothesis.density(setting, 0.1)(whole)
+    assert setting.p(whole) is first
+    assert asked == [len(whole)]
+    assert np.array_equal(setting.p(whole[:5]), first[:5])

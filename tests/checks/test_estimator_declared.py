@@ -1,6 +1,7 @@
 """What is declared decides whatever the law; what is not declared is never relied on, and every scale is as good as another."""
 
 import re
+import sys
 
 import numpy as np
 import pytest
@@ -295,8 +296,10 @@ def reported(values, less=0):
 
 
 def test_standard_errors_that_divide_by_n_are_found_or_it_is_said_with_how_many():
-    said = next(f.message for f in check_estimator(reported(12), 1.0, samples=12_000).findings if "coverage" in f.check)
-    needed = float(re.search(r"would show with (\S+) realisations", said)[1])
+    # Of some samples the skewness is too large yet to say it: the next will.
+    verdicts = (check_estimator(reported(12), 1.0, samples=12_000) for _ in range(60))
+    said = (re.search(r"would show with (\S+) realisations", str([f.message for f in v.findings])) for v in verdicts)
+    needed = float(next(filter(None, said))[1])
     assert 14_000 < needed < 40_000
     found = [check_estimator(reported(12, less=1), 1.0, samples=needed).outcome for _ in range(4)]
     assert found.count("rejected") >= 2  # each with probability 0.99 or so
@@ -312,3 +315,19 @@ def test_standard_errors_of_two_halves_have_one_degree_of_freedom():
     assert verdict.outcome == "not rejected", str(verdict)
     assert "with 1 degree of freedom" in str([f.message for f in verdict.findings])
     assert check_estimator(lambda r, n: halves(r, n, 1.0), 1.0, samples=100_000).cause == "wrong standard errors"
+
+
+def test_values_nearly_as_large_as_there_are():
+    for mean, outcome in ((0.0, "not rejected"), (1e307, "rejected")):
+        verdict = check_estimator(lambda r, n: (r.random(n) - 0.5) * 1.7e308, mean, samples=20_000)
+        assert verdict.outcome == outcome, str(verdict)
+
+
+def test_an_estimator_that_ends_the_program_is_a_subject_that_fails():
+    with pytest.raises(SubjectError, match="SystemExit: 3"):
+        check_estimator(lambda r, n: sys.exit(3), 0.5)
+
+
+def test_a_reference_is_no_image():
+    with pytest.raises(InvalidValueError, match="reshape"):
+        check_estimator(lambda r, n: r.random(n), [[0.5]])

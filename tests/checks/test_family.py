@@ -115,6 +115,21 @@ def test_families_that_make_nothing_are_explained():
         assert words in str(verdict)
 
 
+@pytest.mark.parametrize(
+    ("make", "parameters", "word"),
+    [
+        (3, [1.0], "make"),
+        (Tilted, 5, "parameters"),
+        (Tilted, float, "parameters"),
+        (Tilted, st.floats(2, 1), "parameters"),
+        (Tilted, st.floats(0, 1).filter(lambda p: False), "parameters"),
+    ],
+)
+def test_what_is_no_family_is_explained(make, parameters, word):
+    with pytest.raises(fogproof.InvalidValueError, match=word):
+        fogproof.check_family(make, parameters, samples=1000)
+
+
 def test_no_decision_says_what_decides():
     class Heavy:
         reference = float(np.exp(4.5))

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from fogproof import Ball, Box, UnitDisk, UnitHemisphere, UnitSphere, UnitSquare, check_sampler
-from fogproof.checks import Subject
 from fogproof.checks.jacobian import jacobian_agreement
+from fogproof.checks.subject import Subject
 
 TABLE = np.random.default_rng(7).random((24, 31)) ** 2
 TABLE /= TABLE.sum()

@@ -59,6 +59,8 @@ def test_bad_counts_are_explained():
             check_convergence(mean, counts)
     with pytest.raises(SubjectError, match="run"):
         check_convergence(lambda rng, n: rng.random((n, 2)), [10, 100])
+    with pytest.raises(InvalidValueError, match="reference must be one number"):
+        check_convergence(lambda rng, n: rng.random(n).mean(), [10, 100], reference=[0.5, 0.5])
 
 
 class Congruential:

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from fogproof import Discrete, Interval, UnitDisk, UnitSphere, UnitSquare, check_sampler
-from fogproof.checks import Subject
 from fogproof.checks.few_values import few_values, few_values_axes
 from fogproof.checks.statistics.repeats import repeats_test
 from fogproof.checks.statistics.serial import LAGS, Successions, in_units, serial_test
+from fogproof.checks.subject import Subject
 
 UNIT = Interval(0, 1)
 N = 1 << 17

@@ -2,9 +2,11 @@
 
 import io
 import json
+import os
 import re
 import signal
 import sys
+import threading
 from pathlib import Path
 
 import pytest
@@ -121,3 +123,18 @@ def test_fuzzed_commands_end_well(tmp_path):
     assert sys.stdin is stdin
     assert {kind for kind, _ in (name.split() for name in counts)} >= {"plan", "requests", "cases", "words"}
     assert isinstance(sys.stdout, io.TextIOBase)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no pipes with names")
+def test_requests_come_from_files_and_pipes_but_no_device(tmp_path):
+    request = json.dumps({"quantity": "phase_pdf", "phase": {"kind": "rayleigh"}, "mu": 0.5}).encode()
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    for words in (["oracle"], ["golden", "--requests"]):
+        writer = threading.Thread(target=pipe.write_bytes, args=(request,))
+        writer.start()
+        assert ends(*words, pipe).code == 0
+        writer.join()
+        end = ends(*words, "/dev/zero")
+        assert (end.code, b"it is a device" in end.err) == (2, True)
+        assert b"Is a directory" in ends(*words, tmp_path).err

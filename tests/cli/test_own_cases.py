@@ -160,3 +160,9 @@ def test_an_installed_package_offers_cases(monkeypatch):
     assert [case.name for case in verify.select(["lobes"])] == ["lobes/a", "lobes/b"]
     assert [case.name for case in verify.select(["lobes/b"])] == ["lobes/b"]
     assert [case.origin for case in verify.select(["lobes/b", "fog/analog/haze"])] == ["", "lobes"]
+
+
+def test_a_generator_of_cases_may_be_endless_only_until_it_is_looked_at(tmp_path):
+    path = written(tmp_path, "def cases():\n    while True:\n        yield 1\n", "endless.py")
+    with pytest.raises(InvalidInputError, match="cases\\(\\) must return SamplerCase"):
+        own.own_cases(path)

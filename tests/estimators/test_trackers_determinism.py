@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from tracker_media import MEDIA, OBLIQUE, voxels
 
-from fogproof.checks import batch_generator
+from fogproof.checks.streams import batch_generator
 from fogproof.estimators import (
     DeltaFreePath,
     DeltaTransmittance,

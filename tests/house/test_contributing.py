@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+import fogproof
+from fogproof import domains
 from fogproof.scene import lights, media, phase, shapes
 from fogproof.study.methods.table import METHODS
 
@@ -62,6 +64,27 @@ def test_a_kind_is_in_no_other_file_of_the_sources(recipe, room, kind):
             relative = path.relative_to(ROOT).as_posix()
             names = {node.id for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Name)}
             assert thing not in names or relative in named, relative
+
+
+@pytest.mark.parametrize(
+    ("recipe", "thing", "home"),
+    [("domain", "SphericalTriangle", "domains/spherical_triangle"), ("check", "check_mis", "checks/mis")],
+)
+def test_a_domain_and_a_check_cost_one_file_and_one_table(recipe, thing, home):
+    """Nobody else names them, and the package has them by the table alone."""
+    source = ROOT / "src/fogproof"
+    files = {f"{home}.py", f"{home.partition('/')[0]}/__init__.py"}
+    naming = {path for path in source.rglob("*.py") if re.search(rf"\b{thing}\b", path.read_text())}
+    assert {path.relative_to(source).as_posix() for path in naming} <= files
+    assert f"`src/fogproof/{home.partition('/')[0]}/__init__.py`" in RECIPES[recipe]
+    assert thing in fogproof.__all__
+    assert getattr(fogproof, thing).__module__ == f"fogproof.{home.replace('/', '.')}"
+
+
+def test_every_domain_has_its_name_in_files():
+    functions = {domains.SpherePart}  # no file holds one
+    offered = {getattr(domains, name) for name in domains.__all__} - {domains.Domain, domains.Law}
+    assert set(domains.KINDS.values()) == offered - functions
 
 
 def test_the_way_to_a_study_method_is_the_one_taken():

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from fogproof import analytic
-from fogproof.scene import HenyeyGreenstein, Rayleigh
+from fogproof.errors import InvalidValueError
+from fogproof.scene import HenyeyGreenstein, Medium, Rayleigh
 
 SMALLEST = 5e-324
 
@@ -104,3 +105,52 @@ def test_orders_stay_between_nothing_and_everything():
     found = analytic.slab_reflectance_orders(1e-6, [1e-9, 0.1, 1.0], 8)
     assert np.all(found.value >= 0)
     assert np.all(found.value.sum(axis=-1) <= 1 + found.error.sum(axis=-1))
+
+
+@pytest.mark.parametrize("size", [1e26, 1e100, 1.7e308])
+def test_the_largest_numbers_are_deep(size):
+    """Beyond 1e25 mean free paths nothing changes but what passes where nothing is absorbed."""
+    for found in (
+        analytic.slab_brdf(0.9, size, 0.5, 0.4),
+        analytic.slab_reflectance_orders(size, 0.5, 2),
+        analytic.ball_albedo([0.5, 1.0], size),
+        analytic.ball_radiance(0.5, size, [0.0, 0.3 * size]),
+        analytic.ball_albedo_orders(size, 2),
+        analytic.rod_reflectance_orders(size, 2),
+        analytic.rod_transmittance_orders(size, 2),
+    ):
+        assert np.isfinite(found.value).all()
+        assert (found.error <= 1e-9).all()
+    thin, deep = analytic.slab_btdf(1.0, 1e20, 0.5, 0.4), analytic.slab_btdf(1.0, 1e27, 0.5, 0.4)
+    assert abs(deep.value * 1e7 - thin.value) <= deep.error * 1e7 + thin.error
+
+
+@pytest.mark.parametrize("count", [10**40, 2**60, -1, 2.0, True])
+def test_counts_that_no_memory_holds_are_refused(count):
+    for ask in (
+        lambda: analytic.slab_reflectance_orders(1.0, 0.5, count),
+        lambda: analytic.rod_reflectance_orders(1.0, count),
+        lambda: analytic.ball_albedo_orders(1.0, count),
+        lambda: analytic.phase_legendre_moments(Rayleigh(), count),
+    ):
+        with pytest.raises(InvalidValueError, match="count"):
+            ask()
+
+
+@pytest.mark.parametrize("ray", [None, "x", 1.0, np.zeros(3)])
+def test_what_is_no_ray_has_no_free_path(ray):
+    with pytest.raises(InvalidValueError, match="ray"):
+        analytic.free_path(Medium(0.1, 0.3), ray, 0.1)
+
+
+@pytest.mark.parametrize(("c", "tau"), [(1.0, 3e3), (1.0, 1e8), (1 - 1e-12, 1e9), (0.9, 1e20), (0.99, 1.001e3)])
+def test_a_deep_slab_is_the_half_space_but_for_what_passes(c, tau):
+    """Against doubling, which knows of no half space."""
+    mu0, mu = np.array([0.02, 0.5, 1.0]), np.array([0.7, 0.4, 0.05])
+    found = analytic.slab_brdf(c, tau, mu0, mu)
+    other = analytic.slab_brdf(c, tau, mu0, mu, HenyeyGreenstein(1e-18), 0.0)
+    assert (np.abs(found.value - other.value) <= found.error + other.error).all()
+    assert (found.error <= 2e-14 * found.value).all()
+    passed = analytic.slab_btdf(c, tau, mu0, mu)
+    whole = analytic.half_space_brdf(c, mu0, mu)
+    assert (np.abs(found.value + passed.value - whole.value) <= found.error + passed.error + whole.error).all()

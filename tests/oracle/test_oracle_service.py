@@ -6,6 +6,7 @@ import json
 import subprocess
 import sys
 import time
+import warnings
 
 import numpy as np
 import pytest
@@ -236,3 +237,17 @@ def test_fuzzed_lines_are_all_answered():
     assert outcomes["internal"] == 0
     assert outcomes["answered"] > 100
     assert outcomes["invalid-input"] > 100
+
+
+def test_what_overflows_while_it_is_read_is_no_warning():
+    """Nothing but answers leaves the service: a rectangle too large for the squares of its edges, a direction too long."""
+    scene = {
+        "medium": {"sigma_a": 0.1, "sigma_s": 0.1},
+        "ray": {"origin": [0, 0, 0], "direction": [0, 0, 1], "length": 1},
+    }
+    edges = {"kind": "rectangle", "corner": [1, 1, 1], "edge_u": [1e200, 0, 0], "edge_v": [0, 1e200, 0], "radiance": 1}
+    long = {**scene, "ray": {**scene["ray"], "direction": [0, 1e200, 1e200]}}
+    requests = [{"quantity": "single_scattering", **scene, "light": edges}, {"quantity": "transmittance", **long}]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert "internal" not in codes(converse(*requests))

@@ -49,7 +49,10 @@ SOME = {
 def test_right_ones_pass_and_each_error_is_found(name):
     for error, make in {"": lambda s: s, **ERRORS}.items():
         subject = make(SOME[name]())
-        verdict = check_sampler(
-            subject.sample, subject.pdf, subject.domain, dimensions=subject.dimensions, samples=400_000
-        )
+        for samples in (40_000, 400_000) if error else (400_000,):  # what few leave open, all must decide
+            verdict = check_sampler(
+                subject.sample, subject.pdf, subject.domain, dimensions=subject.dimensions, samples=samples
+            )
+            if verdict.outcome == "rejected":
+                break
         assert verdict.outcome == ("rejected" if error else "not rejected"), f"{error}: {verdict}"

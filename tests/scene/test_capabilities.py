@@ -1,16 +1,10 @@
 """No promise that cannot be kept: plan, estimator and oracle agree on every pair of a medium and a light, refused or drawn."""
 
-import ast
 from itertools import product
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-import fogproof
-import fogproof.analytic
-import fogproof.estimators
-import fogproof.reports
 from fogproof.analytic import radiance
 from fogproof.capabilities import capabilities
 from fogproof.checks import check_estimator
@@ -137,21 +131,3 @@ def test_only_what_nobody_follows_is_refused():
     refused = {pair for pair in PAIRS if plan(scene_of(pair, "short")).refused}
     skies = {f"{medium} / sky" for medium in MEDIA if medium not in ("homogeneous", "empty")}
     assert refused == skies | {"function / sun", "unlike function / sun"}
-
-
-def test_nobody_asks_which_kind_of_medium_it_is():
-    """`isinstance(x, Medium)` and `case VoxelGrid():` belong into no module: kinds are found by name."""
-    names = {kind.__name__ for kind in (*KINDS.values(), *FROM_PYTHON)}
-    packages, asked = (fogproof, fogproof.analytic, fogproof.estimators, fogproof.reports), []
-    for path in sorted(file for p in packages for file in Path(p.__file__).resolve().parent.rglob("*.py")):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            inside = []
-            if isinstance(node, ast.Call) and getattr(node.func, "id", "") in ("isinstance", "issubclass"):
-                inside = [n.id for n in ast.walk(node.args[1]) if isinstance(n, ast.Name)]
-            elif isinstance(node, ast.MatchClass):
-                inside = [getattr(node.cls, "id", "")]
-            elif isinstance(node, ast.Dict):
-                inside = [key.id for key in node.keys if isinstance(key, ast.Name)]
-            if names & {*inside}:
-                asked.append(f"{path}:{node.lineno}")
-    assert not asked

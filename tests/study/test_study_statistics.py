@@ -377,6 +377,15 @@ def test_nothing_changed_between_a_run_and_itself(record):
     assert found["text"] == "nothing changed beyond noise"
 
 
+def test_draws_are_the_same_whatever_the_checks_say_of_them(record):
+    stricter = copy.deepcopy(record)
+    stricter["digest"] = "0" * 64
+    assert compare(record, stricter)["same_draws"]
+    moments = stricter["scenes"][0]["estimators"][0]["moments"]
+    moments["mean"] = float(np.nextafter(moments["mean"], np.inf))
+    assert not compare(record, stricter)["same_draws"]
+
+
 def test_other_random_numbers_change_nothing_beyond_noise(record, tmp_path):
     seed = int(np.random.default_rng().integers(2**40))
     print("seed", seed)

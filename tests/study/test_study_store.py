@@ -15,7 +15,7 @@ import pytest
 from study_fixtures import SMALL, drawn, study_from, toml
 from torture_store import torture
 
-from fogproof.checks import within
+from fogproof.checks.limits import within
 from fogproof.study import StoreError
 from fogproof.study.batches import run_batch
 from fogproof.study.cells import cells_of

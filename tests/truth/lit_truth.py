@@ -116,9 +116,57 @@ def holds(shape, x):
             return all(low <= v <= high for low, v, high in zip(lower, x, upper, strict=True))
 
 
-def pieces(inside, low, high, samples=400):
-    """Return the intervals of [low, high] where inside(t) holds, edges by bisection."""
-    ts = [low + (high - low) * k / samples for k in range(samples + 1)]
+def cross(x, y):
+    return [x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]]
+
+
+def turns(occluder, o, d, p, foot, h):
+    """Return the angles about the light at which a shadow may begin or end along the ray: all there are.
+
+    In the plane of light and ray a sphere is a circle and a disk a chord; the shadow turns where the light's way touches either,
+    and where the ray itself meets them.
+    """
+    across = [x / h for x in minus(along(o, d, foot), p)]
+    normal = cross(across, d)
+    c, r = minus(vector(occluder.center), p), mp.mpf(occluder.radius)
+    a, b, off = dot(c, across), dot(c, d), dot(c, normal)
+
+    def angle(u, v):
+        return mp.atan2(v, u)
+
+    if isinstance(occluder, Sphere):
+        square = r * r - off * off
+        if square <= 0:
+            return []
+        middle, far = angle(a, b), mp.hypot(a, b)
+        found = [] if far <= mp.sqrt(square) else [middle + s * mp.asin(mp.sqrt(square) / far) for s in (-1, 0, 1)]
+        if square > (h - a) ** 2:
+            found += [angle(h, b + s * mp.sqrt(square - (h - a) ** 2)) for s in (-1, 1)]
+        return found
+    n = vector(occluder.normal)
+    u, v = dot(n, across), dot(n, d)
+    steep = u * u + v * v
+    if steep == 0:
+        return []
+    # The nearest point to the centre of the line in which the disk's plane meets that of light and ray, and half its chord.
+    lean = off * dot(n, normal) / steep
+    square = r * r - off * off - (off * dot(n, normal)) ** 2 / steep
+    found = [] if v == 0 else [angle(h, (u * (a - h) + v * b + dot(n, normal) * off) / v)]
+    if square > 0:
+        half, steep = mp.sqrt(square), mp.sqrt(steep)
+        x, y = a + lean * u, b + lean * v
+        found += [angle(x + s * half * -v / steep, y + s * half * u / steep) for s in (-1, 0, 1)]
+    return found
+
+
+def pieces(inside, low, high, samples=400, turns=()):
+    """Return the intervals of [low, high] where inside(t) holds, edges by bisection.
+
+    turns  where it may begin or cease to hold: one asks between them too, so that nothing is too narrow to be met
+    """
+    marks = sorted({low, high, *(t for t in turns if low < t < high)})
+    between = [(a + b) / 2 for a, b in pairwise(marks)]
+    ts = sorted({*(low + (high - low) * k / samples for k in range(samples + 1)), *between})
     states = [inside(t) for t in ts]
     edges = [low] if states[0] else []
     for (t0, s0), (t1, s1) in pairwise(zip(ts, states, strict=True)):
@@ -167,7 +215,8 @@ def from_point(medium, ray, light, occluders=(), shape=None, reach=60):
             return mp.exp(-sigma * (t - enter + r)) * factor(medium.phase, -mp.sin(theta)) * aimed(light, x) / h
 
         total = mp.mpf(0)
-        for start, stop in pieces(lit, low, high):
+        found = [theta for occluder in occluders for theta in turns(occluder, o, d, p, foot, h)]
+        for start, stop in pieces(lit, low, high, turns=found):
             knots = []
             if isinstance(light, SpotLight) and light.falloff_start is not None:
                 knots = pieces(lambda th: from_axis(light, along(o, d, place(th))) < light.falloff_start, start, stop)

@@ -140,7 +140,7 @@ def kernel(which):
     function = (analytic.slab_brdf, analytic.slab_btdf)[which]
 
     def draw(rng):
-        c, tau, mu0, mu = float(rng.uniform(0.05, 1)), number(rng, 1e-3, 30), *map(float, rng.uniform(0.1, 1, 2))
+        c, tau, mu0, mu = float(rng.uniform(0.05, 1)), number(rng, 1e-3, 1e5), *map(float, rng.uniform(0.1, 1, 2))
         azimuth = float(rng.uniform(0, 6))
         if which == 0 and rng.random() < 0.7:
             other = function(c, tau, mu0, mu, ALMOST_ISOTROPIC, azimuth)

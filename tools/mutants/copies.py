@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import multiprocessing
+import multiprocessing.forkserver
 import os
 import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from signal import SIGKILL
 
@@ -21,9 +22,13 @@ _HEAVY = ["pytest", "hypothesis", "numpy", "scipy.special", "scipy.stats", "scip
 
 @dataclass(frozen=True)
 class Copy:
-    """The tracked files of the project in a folder of their own, as they are on disk."""
+    """The tracked files of the project in a folder of their own, as they are on disk.
+
+    sound  which tests have been seen to pass where nothing is wrong
+    """
 
     root: Path
+    sound: dict[str, bool] = field(default_factory=dict)
 
     @staticmethod
     def made(root: Path) -> Copy:
@@ -53,6 +58,12 @@ class Copy:
         finally:
             path.write_text(text)
             os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
+
+    def is_sound(self, test: str, seconds: float) -> bool:
+        """Return whether a test passes where nothing is wrong; it is run once."""
+        if test not in self.sound:
+            self.sound[test] = self.tested([test], seconds)[0] == "survived"
+        return self.sound[test]
 
     def tested(self, tests: list[str], seconds: float) -> tuple[str, str]:
         """Run tests until the first fails; return "killed", "survived" or "time", and the test that failed."""

@@ -46,25 +46,26 @@ def packages() -> list[str]:
 def own_cases(origin: str) -> tuple[Case, ...]:
     """Return the cases of a file or package, `origin` in each; every fault is one sentence. Read once a process."""
     prefix = Path(origin).stem if is_file(origin) else origin
+    seen: dict[str, Case] = {}
     try:
         # What is printed on the way is for people: stdout may be JSON.
         with contextlib.redirect_stdout(sys.stderr):
             made = (_function_of_file if is_file(origin) else _function_of_package)(origin)()
-            made = list(made)
+            for case in made:  # one by one: a generator may never end
+                if not isinstance(case, SamplerCase | EstimatorCase):
+                    what = (
+                        f"cases() must return SamplerCase and EstimatorCase of fogproof.catalogue, got {shorten(case)}"
+                    )
+                    raise InvalidInputError(f"{origin}: {what}", origin)
+                if case.name in seen:
+                    raise InvalidInputError(f"{origin}: two cases are called {case.name!r}", origin)
+                seen[case.name] = replace(case, name=f"{prefix}/{case.name}", origin=origin)
     except InvalidInputError:
         raise
     except (Exception, SystemExit) as error:
         raise InvalidInputError(f"{origin}: {_explained(error, origin)}", origin) from None
-    if not made:
+    if not seen:
         raise InvalidInputError(f"{origin}: cases() returned none", origin)
-    seen: dict[str, Case] = {}
-    for case in made:
-        if not isinstance(case, SamplerCase | EstimatorCase):
-            what = f"cases() must return SamplerCase and EstimatorCase of fogproof.catalogue, got {shorten(case)}"
-            raise InvalidInputError(f"{origin}: {what}", origin)
-        if case.name in seen:
-            raise InvalidInputError(f"{origin}: two cases are called {case.name!r}", origin)
-        seen[case.name] = replace(case, name=f"{prefix}/{case.name}", origin=origin)
     return tuple(seen.values())
 
 

@@ -13,9 +13,10 @@ import math
 import numpy as np
 
 from fogproof.checks.promises import at_any_atom, inside
+from fogproof.checks.statistics.goodness import MISS
 from fogproof.checks.streams import batch_generator
 from fogproof.checks.subject import Subject
-from fogproof.checks.verdict import Finding, Outcome
+from fogproof.checks.verdict import Finding, Outcome, Resolution
 from fogproof.errors import SubjectError
 
 CALLS = {1: 64, 10: 32, 1000: 4}
@@ -61,7 +62,21 @@ def one_law(name: str, subject: Subject, calls: Points, pilot: np.ndarray, seed:
     p, effect = worst
     rejected = p <= alpha
     outcome: Outcome = "rejected" if rejected else "not rejected"
-    return Finding(name, outcome, message, p, alpha, False, effect, effect, cause=_CAUSE if rejected else "")
+    cause = _CAUSE if rejected else ""
+    return Finding(
+        name, outcome, message, p, alpha, False, effect, effect, _reach(calls, n, rivals, alpha), cause=cause
+    )
+
+
+def _reach(calls: Points, n: int, rivals: int, alpha: float) -> Resolution | None:
+    """Return the distance that calls of every size would have shown, but for `MISS`: Massart's bound both ways."""
+    sizes = {size: len(points) for size, points in calls.items() if len(points)}
+    if not sizes:
+        return None
+    size, m = min(sizes.items(), key=lambda one: one[1])
+    root = math.sqrt(0.5 * math.log(4 * rivals / alpha)) + math.sqrt(0.5 * math.log(4 / MISS))
+    distance = root * (1 / math.sqrt(m) + 1 / math.sqrt(n))
+    return Resolution(f"Kolmogorov distance between calls of {size} and of {n}", min(distance, 1.0), MISS)
 
 
 def _distance(a: np.ndarray, b: np.ndarray) -> float:

@@ -16,12 +16,13 @@ import numpy as np
 
 from fogproof.checks.density.charts import Chart
 from fogproof.checks.density.features import Ranges, ranges_of_line, ranges_of_plane
-from fogproof.checks.density.grid import Grid, blurred, grid_of
+from fogproof.checks.density.grid import Grid, grid_of
 from fogproof.checks.density.lattice import lattice
 from fogproof.checks.density.model import Density, Effort, integrated, second_view, unknown
 from fogproof.checks.density.quadrature import Leaves
-from fogproof.checks.normalisation import FLOOR, effort, rounding_share
-from fogproof.checks.subject import Subject, nudged
+from fogproof.checks.density.rounding import Rounded, blurred
+from fogproof.checks.normalisation import FLOOR, effort, pdf_noise
+from fogproof.checks.subject import Subject
 from fogproof.domains import Law
 
 _LOOKS = {1: 1 << 17, 2: 400_000}  # evenly spread points on so many axes
@@ -50,7 +51,7 @@ class Claim:
     found: bool = False
 
 
-def claimed(subject: Subject, chart: Chart, points: np.ndarray, samples: int) -> Claim:
+def claimed(subject: Subject, chart: Chart, points: np.ndarray, samples: int, rounded: Rounded) -> Claim:
     """Integrate the subject's density over its chart; `points` are a pilot sample of the continuous part."""
     work = effort(subject, points)
 
@@ -60,9 +61,8 @@ def claimed(subject: Subject, chart: Chart, points: np.ndarray, samples: int) ->
 
     pilot = chart.coordinates(points) if len(points) else np.empty((0, len(chart.axes)))
     leaves = integrated(chart, density, pilot, work)
-    grid = grid_of(chart, leaves, samples)
-    grid = blurred(grid, chart, points[:2048], nudged(points[:2048], subject.roundoff), subject.roundoff)
-    rounding = rounding_share(subject, points) if subject.precision == "float32" and len(points) else 0.0
+    grid = blurred(grid_of(chart, leaves, samples), chart, rounded)
+    rounding = pdf_noise(subject, points) if subject.precision == "float32" else 0.0
     ranges = _ranges(chart, leaves, grid, density)
     doubt = _doubt(subject, leaves, rounding, lambda: second_view(chart, density, pilot, work))
     doubt = doubt or _strange(subject, chart, density, leaves, work, points)

@@ -19,7 +19,7 @@ from fogproof.checks.arguments import alpha_of, bounds_of, samples_of, seed_of
 from fogproof.checks.diagnosis import likely_cause
 from fogproof.checks.draws import Source, count_of
 from fogproof.checks.escalation import stages
-from fogproof.checks.judgement import Judgement, dependence, judged
+from fogproof.checks.judgement import Judgement, dependence, judged, share_of_a_claim
 from fogproof.checks.observed import Observed
 from fogproof.checks.quantities import Declared, column, quantities_of
 from fogproof.checks.statistics.goodness import binomial_p
@@ -222,7 +222,7 @@ class _Pairs:
         part = (_DIFFERENCE - 2 * _ERRORS if reported else _DIFFERENCE) * alpha
         whole = judged(self.seen, again, samples, part, complete)
         channels = len(self.seen.moments[0])
-        share = part / channels
+        share = share_of_a_claim(part, sum(len(quantity.value) for quantity in self.seen.quantities))
         findings = []
         for finding in whole.findings:
             if finding.check.startswith("mean"):

@@ -61,6 +61,9 @@ def check_convergence(
     channels = rows[0].shape[1]
     if any(row.shape[1] != channels for row in rows):
         raise SubjectError("run must return as many channels at every count", "run")
+    if reference is not None and np.size(Reference.of("reference", reference).value) not in (1, channels):
+        rule = f"must be one number, or one for each of the {channels} channels that run returns"
+        raise InvalidValueError("reference", rule, reference)
     finite = [np.isfinite(row) for row in rows]
     bad = [
         f"{np.count_nonzero(~good)} with {n} samples" for good, n in zip(finite, sizes, strict=True) if not good.all()

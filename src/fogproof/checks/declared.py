@@ -26,6 +26,7 @@ def declared(
         ("pdf", subject.pdf),
         ("cdf", subject.cdf),
         ("eval", subject.eval),
+        ("inverse", subject.inverse),
     ):
         if function is not None and not callable(function):
             raise InvalidValueError(name, "must be a function", function)
@@ -44,6 +45,7 @@ def declared(
     if resolution is not None:
         number("resolution", resolution, "must lie in (0, 1)", 0, 1, open_ends=True)
     _check_atoms_and_events(subject)
+    breaks = _breaks(subject)
     axis = subject.axis
     if axis is not None:
         axis = tuple(unit_vectors("axis", axis).tolist())
@@ -52,7 +54,7 @@ def declared(
             raise InvalidValueError("axis", "must be given with mean_cosine", axis)
         number("mean_cosine", subject.mean_cosine, "must lie in [-1, 1]", -1, 1)
     return (
-        replace(subject, dimensions=dimensions, axis=axis),
+        replace(subject, dimensions=dimensions, axis=axis, breaks=breaks),
         whole("samples", samples, 100),
         fresh_seed() if seed is None else whole("seed", seed, 0, "any whole number >= 0, or None for a fresh one"),
     )
@@ -69,6 +71,27 @@ def _check_atoms_and_events(subject: Subject) -> None:
     events = sum(subject.events.values())
     if subject.events and abs(events - 1) > 1e-9:
         raise InvalidValueError("events", "must have probabilities that sum to 1", events, "declare every label")
+
+
+def _breaks(subject: Subject) -> dict[str, np.ndarray]:
+    """Return the declared breaks, each a sorted array of different numbers, or say what is wrong with them."""
+    if not isinstance(subject.breaks, Mapping):
+        raise InvalidValueError("breaks", "must be {coordinate: numbers}", subject.breaks, 'write breaks={"x": edges}')
+    found = {}
+    for label, values in subject.breaks.items():
+        try:
+            edges = np.unique(np.asarray(values, dtype=np.float64))
+        except (TypeError, ValueError):
+            raise InvalidValueError(f"breaks[{label!r}]", "must be numbers", values) from None
+        if edges.ndim != 1 or not np.isfinite(edges).all():
+            raise InvalidValueError(f"breaks[{label!r}]", "must be finite numbers", values)
+        found[str(label)] = edges
+    if subject.support is not None and not isinstance(subject.support, Domain):
+        fix = "SpherePart(inside) is one that a function recognises"
+        raise InvalidValueError("support", "must be a domain inside the domain", subject.support, fix)
+    if subject.support is not None and subject.support.shape != subject.domain.shape:
+        raise InvalidValueError("support", f"must have points like those of {subject.domain}", subject.support)
+    return found
 
 
 def whole(name: str, value: Any, least: int, fix: str = "") -> int:

@@ -37,6 +37,7 @@ WEIGHTS = {
     "repeated points": 0.25,
     "few values": 0.25,
     "size of the call": 0.25,
+    "evenness": 0.25,
 }
 """Relative shares of alpha. Errors that some tests exist for have p-values far below any share: these tests get little."""
 

@@ -96,6 +96,8 @@ def check_family(
     ('rejected', 'wrong at 0.25, the simplest of 2 rejected; not rejected for parameter >= 0.5, rejected for parameter <= 0.25')
     """
     number("alpha", alpha, "must lie in (0, 1)", 0, 1, open_ends=True)
+    if not callable(make):
+        raise InvalidValueError("make", "must be a function or class: parameter -> sampler or estimator", make)
     members, samples = (int(number(n, v, "must be >= 1", 1)) for n, v in (("members", members), ("samples", samples)))
     started = time.perf_counter()
     search = _Search(make, options, fresh_seed() if seed is None else seed, samples, samples)
@@ -191,8 +193,12 @@ def _round(
         suppress_health_check=list(hypothesis.HealthCheck),
         verbosity=hypothesis.Verbosity.quiet,
     )
-    with contextlib.suppress(_FalsifiedError, hypothesis.errors.Flaky):
-        hypothesis.seed(search.seed)(settings(hypothesis.given(strategy)(trial)))()
+    try:
+        with contextlib.suppress(_FalsifiedError, hypothesis.errors.Flaky):
+            hypothesis.seed(search.seed)(settings(hypothesis.given(strategy)(trial)))()
+    except (hypothesis.errors.InvalidArgument, hypothesis.errors.Unsatisfiable) as error:
+        rule = f"must be a Hypothesis strategy that gives parameters, or a sequence of them; it says: {error}"
+        raise InvalidValueError("parameters", rule, strategy) from None
     return doubt
 
 

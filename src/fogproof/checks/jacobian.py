@@ -28,26 +28,45 @@ _TOO_FEW = 0.25  # of the points: with fewer derivatives nothing is said
 
 def jacobian_agreement(subject: Subject, points: np.ndarray) -> Finding:
     """Compare the pdf with the derivative of the given cdf at sampled points (n, ...) of a domain of two or more coordinates."""
-    points = points[:_POINTS]
+
+    def rosenblatt(x: np.ndarray) -> np.ndarray:
+        assert subject.cdf is not None
+        return numbers("cdf(x)", call("cdf(x)", subject.cdf, x), (len(x), len(law.axes)))
+
+    law = subject.domain.law(points[:_POINTS])
+    found = _compared(subject, rosenblatt, points[:_POINTS])
+    if isinstance(found, float):
+        message = f"the given cdf has a derivative at {found:.0%} of the samples only: its pdf cannot be told"
+        return Finding(_NAME, "inconclusive", message)
+    return agreement(_NAME, *found, "pdf and derivative of the cdf at x =", _TOLERANCE)
+
+
+def agrees(subject: Subject, cube: Map, points: np.ndarray) -> str:
+    """Return how the pdf contradicts the derivative of a map from points to the unit cube, "" if it does not."""
+    found = _compared(subject, cube, points[:_POINTS])
+    if isinstance(found, float):
+        return f"it has a derivative at {found:.0%} of the samples only"
+    finding = agreement(_NAME, *found, "pdf and its derivative at x =", _TOLERANCE)
+    return "" if finding.outcome == "not rejected" else finding.message
+
+
+def _compared(
+    subject: Subject, cube: Map, points: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray] | float:
+    """Return pdf, derivative, slack and place at points with a derivative; the share of these if they are too few."""
     law = subject.domain.law(points)
     u = law.coordinates(points, np.full((len(points), len(law.axes)), 0.5))
-
-    def rosenblatt(v: np.ndarray) -> np.ndarray:
-        assert subject.cdf is not None
-        return numbers("cdf(x)", call("cdf(x)", subject.cdf, law.place(v)), v.shape)
-
-    ratio = _determinants(rosenblatt, u)
+    ratio = _determinants(lambda v: cube(law.place(v)), u)
     claimed, known = subject.density(points), law.density(points)
     good = np.isfinite(ratio) & np.isfinite(claimed)
-    if np.mean(good) < _TOO_FEW:
-        message = f"the given cdf has a derivative at {np.mean(good):.0%} of the samples only: its pdf cannot be told"
-        return Finding(_NAME, "inconclusive", message)
+    if not len(points) or np.mean(good) < _TOO_FEW:
+        return float(np.mean(good)) if len(points) else 0.0
     points, claimed, right = points[good], claimed[good], (ratio * known)[good]
     slack = _TOLERANCE * (np.abs(right) + np.abs(claimed)) + rounding_spread(subject.density, points, subject.roundoff)
     off = np.abs(claimed - right) > slack
     if 0 < np.count_nonzero(off) <= _FEW:
         points, claimed, right, slack = points[~off], claimed[~off], right[~off], slack[~off]
-    return agreement(_NAME, claimed, right, slack, points, "pdf and derivative of the cdf at x =", _TOLERANCE)
+    return claimed, right, slack, points
 
 
 def _determinants(f: Map, u: np.ndarray) -> np.ndarray:

@@ -38,9 +38,14 @@ _ABSURD = 100.0  # times all that was seen: an unseen event that would have to b
 Again = Callable[[], Iterable[tuple[Draws, list[int]]]]
 
 
+def share_of_a_claim(alpha: float, claims: int) -> float:
+    """Return the part of alpha that each of so many claims has, beside the dependence of realisations."""
+    return (1 - _DEPENDENCE) * alpha / claims
+
+
 def share_of_means(alpha: float, claims: int, declared: bool) -> tuple[float, float, float]:
     """Return the parts of alpha that one mean has for the usual test, for declared facts, and for bets on them."""
-    share = (1 - _DEPENDENCE) * alpha / claims
+    share = share_of_a_claim(alpha, claims)
     first = (1 - _SECOND) * share
     return (1 - LAWLESS * declared) * first, LAWLESS * first, _SECOND * share
 
@@ -67,7 +72,7 @@ def judged(seen: Observed, again: Again, samples: int, alpha: float, complete: b
     findings = [Finding("finite values", "not rejected", f"all {seen.n} realisations are finite")]
     claims = [(q, c) for q in seen.quantities for c in range(len(q.value))]
     covered = seen.coverage.n > 0
-    share = (1 - _DEPENDENCE) * alpha / (len(claims) + covered)
+    share = share_of_a_claim(alpha, len(claims) + covered)
     fixed = without_variance(seen.quantities)
     final = False
     for (quantity, channel), data in zip(claims, (m for row in seen.moments for m in row), strict=True):
@@ -113,6 +118,12 @@ class _Claim:
         return float(self.quantity.error[self.channel])
 
     @property
+    def uncertain(self) -> float:
+        """By how much the reference itself may be off."""
+        own = self.quantity.own
+        return self.error if own is None else float(own[self.channel])
+
+    @property
     def known(self) -> Known:
         """What is declared; and where nothing is, that there are no negative values if only absurd ones could matter."""
         known = self.quantity.known_of(self.channel)
@@ -154,7 +165,9 @@ class _Claim:
         """Judge the mean; where the usual test may mislead, look at every number once more."""
         alpha, known = (1 - _SECOND) * self.share, self.known
         cause = self.quantity.cause
-        finding = mean_test(self.name, self.name, self.data, self.value, self.error, alpha, cause, known)
+        finding = mean_test(
+            self.name, self.name, self.data, self.value, self.error, alpha, cause, known, self.uncertain
+        )
         if finding.outcome == "inconclusive" and self.quantity.tame and self.data.m2 == 0 and self._absurd():
             side = "too large" if self.data.mean > self.value else "too small"
             message = finding.message.partition(". Declare")[0]

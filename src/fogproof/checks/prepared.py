@@ -14,20 +14,22 @@ from fogproof.checks.call_sizes import Points, small_calls
 from fogproof.checks.claim import Claim, blind, claimed
 from fogproof.checks.density.charts import chart_of
 from fogproof.checks.density.features import Ranges, emptiest
-from fogproof.checks.density.grid import Grid, line_grid_from_cdf, pilot_grid, refilled, unit_square_grid
+from fogproof.checks.density.grid import Grid, line_grid_from_cdf, pilot_grid, refilled, unit_cube_grid
 from fogproof.checks.density.model import looked_at, looked_at_plane
+from fogproof.checks.density.rounding import ROUNDED, Rounded
 from fogproof.checks.edges import edge_uniforms, no_edge_uniforms
 from fogproof.checks.given_cdf import agreement, continuous_cdf, rosenblatt
+from fogproof.checks.hints import cube_map, supported, why_not_breaks, why_not_inverse
 from fogproof.checks.jacobian import jacobian_agreement
 from fogproof.checks.mixture import MixtureTest
 from fogproof.checks.normalisation import FLOOR, albedo, mean_cosine, normalisation
-from fogproof.checks.probes import precision_agreement, reference_agreement
-from fogproof.checks.promises import inside, usual_labels
+from fogproof.checks.probes import pdf_twice, precision_agreement, reference_agreement, support_of_eval
+from fogproof.checks.promises import at_any_atom, inside, usual_labels
 from fogproof.checks.purity import purity
 from fogproof.checks.statistics.repeats import KEPT, expected_repeats
 from fogproof.checks.statistics.serial import in_units
 from fogproof.checks.streams import batch_generator
-from fogproof.checks.subject import Subject
+from fogproof.checks.subject import Subject, nudged
 from fogproof.checks.table import table_grid
 from fogproof.checks.tally import Counter, Tally
 from fogproof.checks.verdict import Finding
@@ -39,6 +41,7 @@ PILOT = 1 << 14
 _LARGE_PILOT = 1 << 17  # samples that the histogram of the label test follows, at most
 _MOST_ENTRIES = 1 << 22  # of a table that is summed over
 _PRECISION_POINTS = 4096
+_CANCELLED = 4.0  # units in the last place of an axis that single precision may lose
 
 
 @dataclass(frozen=True)
@@ -58,6 +61,7 @@ class Prepared:
     findings  of deterministic checks, but for the normalisation, which the samples may still refine
     counted   whether the probabilities of the cells are known: from quadrature, a table, or a given cdf
     calls     points of small calls of a sampler that draws its own uniforms, None of any other
+    disbelieved  hints that the pdf contradicts, and how
     """
 
     subject: Subject
@@ -69,6 +73,7 @@ class Prepared:
     counted: bool
     calls: Points | None = None
     seed: int = 0
+    disbelieved: tuple[str, ...] = ()
 
     @property
     def grid(self) -> Grid:
@@ -84,6 +89,11 @@ class Prepared:
             return None
         mass = self.subject.density(np.arange(self.grid.marginals[0].mass.size, dtype=np.float64))
         return float(mass.sum()), 4 * self.subject.roundoff * float(np.sum(np.abs(mass)))
+
+    @cached_property
+    def first_call(self) -> np.ndarray:
+        """The pilot's counts, (k, 32): those of a call like any other."""
+        return self.counter.coarse_at(self.pilot.points)
 
     def convention(self, tally: Tally) -> tuple[float | None, int]:
         """Return the probability of the continuous part, None where it is not known, and among how many samples.
@@ -162,27 +172,32 @@ class Prepared:
 
 def prepare(subject: Subject, samples: int, seed: int) -> Prepared:
     """Integrate the claim, lay out cells for up to `samples` samples, and ask all single questions."""
-    prepared = _prepared(subject, samples, seed)
-    own = subject.dimensions is None and not subject.quasi_random
-    return replace(prepared, calls=small_calls(subject, seed) if own else None, seed=seed)
-
-
-def _prepared(subject: Subject, samples: int, seed: int) -> Prepared:
     pilot = _pilot(subject, seed)
-    findings = []
-    if subject.dimensions is None:
-        findings.append(no_edge_uniforms())
-    else:
-        uniforms = subject.uniforms(batch_generator(seed, "samples", 0, 0), PILOT)
-        findings += [*purity(subject, uniforms), edge_uniforms(subject, pilot.labels)]
-    if subject.reference is not None and len(pilot.points):
-        findings.append(reference_agreement(subject, pilot.points))
+    subject, no_support = supported(subject, pilot.points)
+    no_inverse = why_not_inverse(subject, pilot.points)
+    if no_inverse:
+        subject = replace(subject, inverse=None)
+    prepared = _prepared(subject, samples, seed, pilot)
+    chart = prepared.claim.chart if prepared.claim else None
+    labels = tuple(axis.label for axis in chart.axes) if chart else ()
+    no_breaks = why_not_breaks(subject, labels, prepared.claim.doubt if prepared.claim else "")
+    own = subject.dimensions is None and not subject.quasi_random
+    calls = small_calls(subject, seed) if own else None
+    disbelieved = tuple(filter(None, (no_breaks, no_support, no_inverse)))
+    return replace(prepared, calls=calls, seed=seed, disbelieved=disbelieved)
+
+
+def _prepared(subject: Subject, samples: int, seed: int, pilot: Pilot) -> Prepared:
+    findings = _questions(subject, pilot, seed)
     if isinstance(subject.domain, Discrete) and subject.domain.n <= _MOST_ENTRIES:
         grid, count = table_grid(subject, int(subject.domain.n))
         counter = _counter(subject, grid, count, None, pilot, None)
         return Prepared(subject, samples, pilot, None, counter, tuple(findings), True)
     chart = chart_of(subject.domain, pilot.points, subject.axis)
-    claim = None if chart is None else claimed(subject, chart, pilot.points, samples)
+    if chart is not None and subject.breaks:
+        chart = chart.cut(subject.breaks)
+    rounded = _rounded(subject, pilot.points, seed)
+    claim = None if chart is None else claimed(subject, chart, pilot.points, samples, rounded)
     if claim is None or claim.doubt:
         return _by_labels(subject, samples, seed, pilot, claim, findings)
     if subject.axis is not None and subject.mean_cosine is not None:
@@ -203,8 +218,49 @@ def _prepared(subject: Subject, samples: int, seed: int) -> Prepared:
     if len(claim.chart.axes) > 1 and (subject.cdf is not None or not _independent(grid)):
         law = subject.domain.law(pilot.points)
         mixture = MixtureTest.of(subject, law, pilot.points, seed, 1)
+    if subject.inverse is not None:
+        grid, count, ranges = *_by_inverse(subject, samples), None
     counter = _counter(subject, grid, count, ranges, pilot, mixture)
     return Prepared(subject, samples, pilot, claim, counter, tuple(findings), True)
+
+
+def _questions(subject: Subject, pilot: Pilot, seed: int) -> list[Finding]:
+    """Return what is found by single questions to the functions given."""
+    findings = []
+    if subject.dimensions is None:
+        findings.append(no_edge_uniforms())
+    else:
+        uniforms = subject.uniforms(batch_generator(seed, "samples", 0, 0), PILOT)
+        findings += [*purity(subject, uniforms), edge_uniforms(subject, pilot.labels)]
+    if subject.reference is not None and len(pilot.points):
+        findings.append(reference_agreement(subject, pilot.points))
+    findings += pdf_twice(subject, pilot.points)
+    if subject.eval is not None:
+        findings.append(support_of_eval(subject, pilot.points))
+    return findings
+
+
+def _by_inverse(subject: Subject, samples: int) -> tuple[Grid, Callable[[np.ndarray], Any]]:
+    """Return the cells of the unit cube, and how samples are counted in them by the given inverse."""
+    cube = cube_map(subject)
+    labels = subject.domain.law(np.empty((0, *subject.domain.shape))).axes
+    grid = unit_cube_grid(
+        tuple(f"inverse, {k + 1} of {len(labels)}" for k in range(len(labels))), samples, subject.roundoff
+    )
+    return grid, lambda x: tuple(np.ascontiguousarray(cube(x).T))
+
+
+def _rounded(subject: Subject, points: np.ndarray, seed: int) -> Rounded:
+    """Return what rounding does to points of the pilot, and whether double precision leads elsewhere."""
+    shown, exact = points, None
+    if subject.precision == "float32" and subject.dimensions is not None:
+        u = subject.uniforms(batch_generator(seed, "samples", 0, 0), ROUNDED)
+        single, double = subject.draw_at(u), subject.draw_at(u.astype(np.float64))
+        both = inside(subject, single) & inside(subject, double)
+        both &= ~at_any_atom(subject, single.x) & ~at_any_atom(subject, double.x)
+        if not np.array_equal(single.x[both], double.x[both]):
+            shown, exact = single.x[both], double.x[both]
+    return Rounded(shown, nudged(shown[:ROUNDED], subject.roundoff), exact, subject.roundoff)
 
 
 def _independent(grid: Grid) -> bool:
@@ -216,8 +272,8 @@ def _by_cdf(subject: Subject, claim: Claim, samples: int) -> tuple[Grid, Callabl
     if len(claim.chart.axes) == 1:
         cdf = partial(continuous_cdf, subject, claim.chart)
         return line_grid_from_cdf(claim.grid, cdf, 8 * subject.roundoff), claim.chart.count
-    labels = (claim.chart.axes[0].label, claim.chart.axes[1].label)
-    return unit_square_grid(labels, samples), partial(rosenblatt, subject)
+    labels = tuple(f"cdf of {axis.label}" for axis in claim.chart.axes)
+    return unit_cube_grid(labels, samples, subject.roundoff), partial(rosenblatt, subject)
 
 
 def _by_labels(
@@ -238,9 +294,13 @@ def _by_labels(
     axes = len(law.axes)
     if subject.cdf is not None and axes > 1 and not law.stepped:
         findings.append(jacobian_agreement(subject, pilot.points))
+    if subject.inverse is not None and not law.stepped:
+        counter = _counter(subject, *_by_inverse(subject, samples), None, pilot, mixture)
+        return Prepared(subject, samples, pilot, claim, counter, tuple(findings), True)
     if subject.cdf is not None and (axes == 2 or claim is not None):
         line = claim is not None and axes == 1
-        square = unit_square_grid((law.axes[0], law.axes[-1]), samples), partial(rosenblatt, subject)
+        labels = (f"cdf of {law.axes[0]}", f"cdf of {law.axes[-1]}")
+        square = unit_cube_grid(labels, samples, subject.roundoff), partial(rosenblatt, subject)
         grid, count = _by_cdf(subject, claim, samples) if claim is not None and line else square
         counter = _counter(subject, grid, count, None, pilot, mixture)
         return Prepared(subject, samples, pilot, claim, counter, tuple(findings), True)
@@ -283,7 +343,14 @@ def _precision(subject: Subject, claim: Claim, seed: int) -> Finding:
     u = batch_generator(seed, "precision", 0, 0).random((_PRECISION_POINTS, subject.dimensions), dtype=np.float32)
 
     def probability(x: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
-        counted = zip(claim.grid.marginals, claim.chart.count(x), strict=True)
-        return [(m.at(c), np.interp(c, m.edges, m.blur)) for m, c in counted]
+        counted, moved = claim.chart.count(x), [claim.chart.count(y) for y in nudged(x, subject.roundoff)]
+        found = []
+        for axis, m in enumerate(claim.grid.marginals):
+            step = _CANCELLED * subject.roundoff * (m.edges[-1] - m.edges[0])
+            at, c = m.at(counted[axis]), counted[axis]
+            others = [c - step, c + step, *(each[axis] for each in moved)]
+            gaps = [np.abs(m.at(np.clip(o, m.edges[0], m.edges[-1])) - at) for o in others]
+            found.append((at, np.max([np.minimum(gap, 1 - gap) for gap in gaps], axis=0)))
+        return found
 
     return precision_agreement(subject, u, probability)

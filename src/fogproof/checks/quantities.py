@@ -24,6 +24,7 @@ class CheckedQuantity:
     error    (channels,) bound on the error of that
     cause    the likely class of error where it is not
     known    what is declared of one of the numbers, channel by channel; or nothing
+    own      (channels,) what of that is the reference's own, where the rest is tolerated; None if it is all
     tame     whether an event a hundred times larger than all that was seen is out of the question
     signed   whether numbers of both signs are usual, so that it tells nothing if none was negative
     """
@@ -34,6 +35,7 @@ class CheckedQuantity:
     error: np.ndarray
     cause: str
     known: tuple[Known, ...] = ()
+    own: np.ndarray | None = None
     tame: bool = False
     signed: bool = False
 
@@ -73,8 +75,8 @@ def quantities_of(
         if declared.variance is not None:
             raise InvalidValueError("variance", "needs one reference, not one for each order", declared.variance)
         return [_order(label, one, declared) for label, one in reference.items()] + cost
-    value, error = _exact("reference", reference, None)
-    error = declared.widened(value, error)
+    value, own = _exact("reference", reference, None)
+    error = declared.widened(value, own)
     low, high = declared.bounds
     inside = (value + error >= low) & (value - error <= high)
     require("reference", value, inside, f"must lie within the declared bounds ({low:g}, {high:g})")
@@ -111,7 +113,7 @@ def quantities_of(
                 cause,
             )
         )
-    return [CheckedQuantity("mean", lambda d: d.value, value, error, "bias", tuple(known)), *more, *cost]
+    return [CheckedQuantity("mean", lambda d: d.value, value, error, "bias", tuple(known), own), *more, *cost]
 
 
 def _rounding_of_variance(v: np.ndarray, value: np.ndarray, roundoff: float) -> np.ndarray:
@@ -134,7 +136,9 @@ def _order(label: int, reference: Reference | float, declared: Declared) -> Chec
             raise SubjectError("draw must return Draws with an order when references by order are given", "draw: order")
         return np.where(column(d.order) == label, d.value, 0.0)
 
-    return CheckedQuantity(f"mean of order {label}", numbers, value, declared.widened(value, error), "bias", known)
+    return CheckedQuantity(
+        f"mean of order {label}", numbers, value, declared.widened(value, error), "bias", known, error
+    )
 
 
 def _cost(declared: Declared) -> list[CheckedQuantity]:
@@ -153,6 +157,9 @@ def _cost(declared: Declared) -> list[CheckedQuantity]:
 def _exact(name: str, reference: Reference | float, channels: int | None) -> tuple[np.ndarray, np.ndarray]:
     reference = Reference.of(name, reference)
     value, error = np.broadcast_arrays(np.atleast_1d(reference.value), np.atleast_1d(reference.error))
+    if value.ndim > 1:
+        rule = "must be a number or (channels,)"
+        raise InvalidValueError(name, rule, f"shape {value.shape}", "an image becomes one by reshape(-1, channels)")
     for part, array in ((name, value), (f"{name}: error", error)):
         require(part, array, np.isfinite(array), "must be finite", "nothing can be held to a value that is not known")
     if name != "reference":

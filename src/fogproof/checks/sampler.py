@@ -23,7 +23,7 @@ from fogproof.checks.diagnosis import diagnosed
 from fogproof.checks.escalation import EARLY, Stage, doubtful, judged, stages, total_weight
 from fogproof.checks.figures import bins_figure, z_map_figure
 from fogproof.checks.prepared import Prepared, prepare
-from fogproof.checks.statistics.scan import blocks
+from fogproof.checks.statistics.goodness import blocks
 from fogproof.checks.streams import batch_generator, batch_sizes
 from fogproof.checks.subject import Precision, Subject
 from fogproof.checks.suite import tests_of
@@ -50,6 +50,9 @@ def check_sampler(
     events: Mapping[int, float] | None = None,
     uniform_bits: int | None = None,
     quasi_random: bool = False,
+    breaks: Mapping[str, Any] | None = None,
+    support: Domain | None = None,
+    inverse: Callable[[np.ndarray], Any] | None = None,
     resolution: float | None = None,
     samples: int = 1_000_000,
     alpha: float = 1e-6,
@@ -71,10 +74,17 @@ def check_sampler(
     events       {label: probability} of every event label that `Draw.event` may have
     uniform_bits how many bits the uniforms inside the sampler have, if fewer than the precision's own: repeated values follow
     quasi_random True if the points of one call are stratified or a low-discrepancy sequence: only their distribution is tested
+    breaks       {coordinate: where the pdf may jump}, such as the edges of a table's cells: {"x": edges}; coordinates are called
+                 x and y on the plane, mu and phi on the sphere, r and phi on the disk
+    support      the part of the domain outside which the pdf is 0, itself a domain: `Triangle(...)` in `UnitSquare()`
+    inverse      x -> u (n, k), any bijection from the domain, of k coordinates, onto the unit cube under which samples are uniform
     resolution   Kolmogorov distance to detect: the first look is sized for it, and a sampler that is clearly right stops there
     samples      most samples to draw
     alpha        false-alarm probability of this call with everything in it
     seed         any whole number; None draws a fresh one, which the verdict states
+
+    `breaks`, `support` and `inverse` are hints: they make a check sharper where a pdf jumps, and change no verdict if they are
+    wrong. A hint that the pdf contradicts is not used, and the verdict says so in `unchecked`.
     """
     check = SamplerCheck.of(
         Subject(
@@ -93,6 +103,9 @@ def check_sampler(
             dict(events or {}),
             uniform_bits,
             quasi_random,
+            {} if breaks is None else breaks,
+            support,
+            inverse,
         ),
         resolution,
         samples,
@@ -202,7 +215,7 @@ class SamplerCheck:
             cause,
             reproduce,
             diagnosis=diagnosis,
-            unchecked=unchecked(subject, pilot.channels, bool(pilot.labels)),
+            unchecked=(*unchecked(subject, pilot.channels, bool(pilot.labels)), *self.prepared.disbelieved),
         )
 
 
@@ -231,8 +244,10 @@ def _illustrated(prepared: Prepared, tally: Tally, findings: list[Finding]) -> l
 
 def _options(subject: Subject) -> str:
     """Return what else was declared, as arguments of a call; functions go by the names of their arguments."""
-    functions = [f", {name}={name}" for name in ("cdf", "eval", "reference") if getattr(subject, name) is not None]
-    names = ("atoms", "axis", "mean_cosine", "albedo", "events", "uniform_bits", "quasi_random")
+    functions = [
+        f", {name}={name}" for name in ("cdf", "eval", "reference", "inverse") if getattr(subject, name) is not None
+    ]
+    names = ("atoms", "axis", "mean_cosine", "albedo", "events", "uniform_bits", "quasi_random", "breaks", "support")
     values = [f", {name}={getattr(subject, name)!r}" for name in names if getattr(subject, name)]
     precision = [f", precision={subject.precision!r}"] if subject.precision != "float64" else []
     return "".join(functions + values + precision)

@@ -35,6 +35,9 @@ class Subject:
     events: Mapping[int, float] = field(default_factory=dict)
     uniform_bits: int | None = None
     quasi_random: bool = False
+    breaks: Mapping[str, Any] = field(default_factory=dict)
+    support: Domain | None = None
+    inverse: Callable[[np.ndarray], Any] | None = None
 
     @property
     def bits(self) -> int:
@@ -85,7 +88,7 @@ def call(what: str, function: Callable[..., Any], *arguments: Any) -> Any:
         return function(*arguments)
     except FogproofError:
         raise
-    except Exception as error:
+    except (Exception, SystemExit) as error:  # what ends a program must not end whoever checks it
         raise SubjectError(f"{what} raised {type(error).__name__}: {error}", what) from error
 
 

@@ -16,11 +16,19 @@ from fogproof.checks.mixture import MixtureTest
 from fogproof.checks.normalisation import FLOOR
 from fogproof.checks.prepared import Prepared
 from fogproof.checks.statistics import labels
-from fogproof.checks.statistics.goodness import binomial, chi_square, chi_square_along, chi_square_sparse, kolmogorov
+from fogproof.checks.statistics.evenness import evenness_test
+from fogproof.checks.statistics.goodness import (
+    binomial,
+    blocks,
+    chi_square_along,
+    joint,
+    joint_fine,
+    kolmogorov,
+)
 from fogproof.checks.statistics.means import mean_test
 from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.statistics.repeats import repeats_test
-from fogproof.checks.statistics.scan import blocks, scan, scan_ends, scan_plane
+from fogproof.checks.statistics.scan import scan, scan_ends, scan_plane
 from fogproof.checks.statistics.serial import serial_test
 from fogproof.checks.statistics.smooth import cross, smooth
 from fogproof.checks.subject import named
@@ -44,16 +52,7 @@ def tests_of(prepared: Prepared, tally: Tally) -> list[Test]:
         _add_cells(add, grid, tally)
     if prepared.counter.mixture is not None and not vacuum:
         _add_labels(add, prepared.counter.mixture, tally)
-    if not subject.quasi_random:
-        add("serial correlation", serial_test, "serial correlation", tally.serial)
-    if prepared.calls is not None:
-        asked = subject, prepared.calls, prepared.pilot.points, prepared.seed
-        add("size of the call", one_law, "size of the call", *asked)
-    if prepared.counter.fingerprinted:
-        for coordinate in few_values_axes(subject):
-            drawn = prepared.pilot.points, tally.points
-            add("few values", few_values, f"different values of {coordinate}", subject, coordinate, *drawn)
-        add("repeated points", repeats_test, "repeated points", tally.prints, prepared.expected_repeats)
+    _add_streams(add, prepared, tally, vacuum)
     n = max(tally.drawn, 1)
     wrong_atom = "wrong probability of an atom"
     rest, tried = prepared.convention(tally)
@@ -87,6 +86,24 @@ def tests_of(prepared: Prepared, tally: Tally) -> list[Test]:
     return tests
 
 
+def _add_streams(add: Callable[..., None], prepared: Prepared, tally: Tally, vacuum: bool) -> None:
+    """Add the tests of samples against each other: of their order, their calls, their repetitions."""
+    subject, grid = prepared.subject, prepared.grid
+    if not subject.quasi_random:
+        add("serial correlation", serial_test, "serial correlation", tally.serial)
+    if prepared.counter.evens and not vacuum:
+        calls = np.concatenate([prepared.first_call[None], tally.calls])
+        add("evenness", evenness_test, "independence within a call", tuple(m.label for m in grid.marginals), calls)
+    if prepared.calls is not None:
+        asked = subject, prepared.calls, prepared.pilot.points, prepared.seed
+        add("size of the call", one_law, "size of the call", *asked)
+    if prepared.counter.fingerprinted:
+        for coordinate in few_values_axes(subject):
+            drawn = prepared.pilot.points, tally.points
+            add("few values", few_values, f"different values of {coordinate}", subject, coordinate, *drawn)
+        add("repeated points", repeats_test, "repeated points", tally.prints, prepared.expected_repeats)
+
+
 def _add_cells(add: Callable[..., None], grid: Grid, tally: Tally) -> None:
     """Add the tests of counts in cells of known probability."""
     several = len(grid.marginals) > 1
@@ -104,13 +121,11 @@ def _add_cells(add: Callable[..., None], grid: Grid, tally: Tally) -> None:
     if grid.plane is not None and tally.plane is not None:
         plane, coarse = grid.plane, blocks(tally.plane, len(grid.plane.mass))
         labels = (grid.marginals[0].label, grid.marginals[1].label)
-        add("joint", chi_square, "chi-square, joint", coarse, plane.mass, plane.error, plane.blur(len(coarse)))
+        add("joint", joint, "chi-square, joint", plane, coarse)
         add("dependence", cross, "dependence of the axes", labels, plane, coarse)
         add("patches", scan_plane, "scan for patches", labels, plane, tally.plane)
         if plane.independent:
-            shares, blur = plane.shares[0][:, None] * plane.shares[1], plane.blur(plane.size)
-            fine = tally.plane.ravel(), shares.ravel(), blur.ravel()
-            add("fine joint", chi_square_sparse, "chi-square, fine joint", *fine)
+            add("fine joint", joint_fine, "chi-square, fine joint", plane, tally.plane)
 
 
 def _add_labels(add: Callable[..., None], mixture: MixtureTest, tally: Tally) -> None:

@@ -17,6 +17,7 @@ from fogproof.checks.density.features import Ranges, kept
 from fogproof.checks.density.grid import Grid
 from fogproof.checks.mixture import MixtureTest
 from fogproof.checks.promises import Watch
+from fogproof.checks.statistics.evenness import CALLS, GROUPS
 from fogproof.checks.statistics.labels import Sums
 from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.statistics.repeats import KEPT, fingerprints
@@ -45,6 +46,7 @@ class Tally:
     strange  points whose density the quadrature does not know
     labels   sums of the label test: with all samples, and with those only that were not given up; None without the test
     given_up samples that the sampler itself gave up on
+    calls    (calls, k, 32) coarse counts of the first calls, where a stream may be stratified
     watch    what was seen of each promise
     """
 
@@ -62,6 +64,7 @@ class Tally:
     strange: np.ndarray
     labels: tuple[Sums, Sums] | None
     given_up: int
+    calls: np.ndarray
     watch: Watch = field(repr=False)
 
     @property
@@ -99,6 +102,7 @@ class Tally:
             kept(self.strange, other.strange),
             _joined(self.labels, other.labels),
             self.given_up + other.given_up,
+            np.concatenate([self.calls, other.calls])[:CALLS],
             self.watch.merged(other.watch),
         )
 
@@ -120,6 +124,7 @@ class Tally:
             "strange": _packed(self.strange),
             "labels": None if self.labels is None else [[_packed(a) for a in each.columns] for each in self.labels],
             "given_up": self.given_up,
+            "calls": _packed(self.calls),
             "broken": {name: list(what) for name, what in self.watch.broken.items()},
             "seen": self.watch.seen,
         }
@@ -144,6 +149,7 @@ class Tally:
             _unpacked(state["strange"]),
             None if state["labels"] is None else _label_sums(state["labels"]),
             state["given_up"],
+            _unpacked(state["calls"]),
             replace(watch, broken=broken, seen=dict(state["seen"])),
         )
 
@@ -169,6 +175,11 @@ class Counter:
     fingerprinted: bool
     mixture: MixtureTest | None = None
 
+    @property
+    def evens(self) -> bool:
+        """Whether the points of one call may know each other: those of a function of uniforms cannot."""
+        return self.subject.dimensions is None and not self.subject.quasi_random
+
     def empty(self) -> Tally:
         """Return the tally of no samples."""
         k = len(self.grid.marginals)
@@ -188,6 +199,7 @@ class Counter:
             np.empty(0),
             None,
             0,
+            np.empty((0, k, GROUPS), dtype=np.int64),
             Watch(self.subject, self.labels),
         )
 
@@ -228,6 +240,7 @@ class Counter:
         sums = self.mixture.count(draw, good, p, index) if self.mixture is not None and mixed else None
         lost = 0 if draw.valid is None else int(np.count_nonzero(~draw.valid))
         n, strange = len(draw.x), strange[:4096]
+        calls = self.coarse(fine)[None] if self.evens and index < CALLS else np.empty((0, len(fine), GROUPS), np.int64)
         return Tally(
             (index,),
             n,
@@ -243,8 +256,20 @@ class Counter:
             strange,
             sums,
             lost,
+            calls,
             watch,
         )
+
+    def coarse(self, fine: tuple[np.ndarray, ...]) -> np.ndarray:
+        """Return (k, 32) counts in groups of the fine cells, of about equal probability."""
+        groups = zip(self.grid.marginals, fine, strict=True)
+        rows = [np.bincount(np.minimum((m.scores * GROUPS).astype(np.intp), GROUPS - 1), c, GROUPS) for m, c in groups]
+        return np.stack(rows).astype(np.int64)
+
+    def coarse_at(self, points: np.ndarray) -> np.ndarray:
+        """Return (k, 32) counts of points, as one call of them has."""
+        cells = zip(self.grid.marginals, self.count(points), strict=True)
+        return self.coarse(tuple(np.bincount(m.lookup(c), minlength=len(m.mass)) for m, c in cells))
 
 
 def _joined(first: tuple[Sums, Sums] | None, second: tuple[Sums, Sums] | None) -> tuple[Sums, Sums] | None:

@@ -16,6 +16,9 @@ if TYPE_CHECKING:
 ALLOWED = ("tolerance", "bounds", "tails", "precision", "resolution")
 """Settings that change what a pass means: they are printed with it."""
 
+_SHOWN = 3
+"""Findings of an outcome that `str` tells in full."""
+
 Outcome = Literal["rejected", "not rejected", "inconclusive"]
 
 
@@ -153,13 +156,13 @@ class Verdict:
     def raise_if_rejected(self) -> None:
         """Raise `RejectedError` with the whole explanation if the outcome is "rejected"."""
         if self.outcome == "rejected":
-            raise RejectedError(str(self))
+            raise RejectedError(self.explain())
 
     def raise_unless_passed(self) -> None:
         """Raise `RejectedError` or `InconclusiveError` with the whole explanation unless the outcome is "not rejected"."""
         self.raise_if_rejected()
         if self.outcome == "inconclusive":
-            raise InconclusiveError(str(self))
+            raise InconclusiveError(self.explain())
 
     def __bool__(self) -> bool:
         raise UnsupportedError(
@@ -175,11 +178,19 @@ class Verdict:
         )
 
     def __str__(self) -> str:
+        return self.explain(_SHOWN)
+
+    def explain(self, most: int | None = None) -> str:
+        """Return the verdict in words: at most so many findings of each outcome in full, all of them for None."""
         lines = [f"{self.outcome} (alpha {self.alpha:g}, {self.samples} samples, seed {self.seed})"]
         if self.cause:
             lines.append(f"  likely: {self.cause}" + (f"; {self.diagnosis}" if self.diagnosis else ""))
-        lines += [f"  {f.outcome:12}  {_line_of(f)}" for f in self.findings if f.outcome == "rejected"]
-        lines += [f"  {f.outcome:12}  {_line_of(f)}" for f in self.findings if f.outcome == "inconclusive"]
+        for outcome in ("rejected", "inconclusive"):
+            found = [f for f in self.findings if f.outcome == outcome]
+            told = found if most is None or len(found) <= most + 1 else found[:most]
+            lines += [f"  {f.outcome:12}  {_line_of(f)}" for f in told]
+            if more := [f.check for f in found[len(told) :]]:
+                lines.append(f"  {outcome:12}  by {len(more)} more: {', '.join(more)}")
         passed = [f.check for f in self.findings if f.outcome == "not rejected"]
         if passed:
             lines.append(f"  not rejected: {', '.join(passed)}")

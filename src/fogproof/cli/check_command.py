@@ -6,7 +6,7 @@ import json
 
 import click
 
-from fogproof.checks import jsonable
+from fogproof.checks.verdict import jsonable
 from fogproof.cli.signals import stoppable
 from fogproof.cli.terminal import say
 from fogproof.pipe.check import Outcome, Settings, check_file, check_program

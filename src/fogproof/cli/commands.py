@@ -40,7 +40,8 @@ class _LazyGroup(click.Group):
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
         if name not in _COMMANDS:
             return None
-        return importlib.import_module(f"fogproof.cli.{name}_command").command
+        command: click.Command = importlib.import_module(f"fogproof.cli.{name}_command").command
+        return command
 
     def invoke(self, ctx: click.Context) -> Any:
         try:

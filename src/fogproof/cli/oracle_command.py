@@ -13,6 +13,7 @@ import click
 
 from fogproof.cli.terminal import say
 from fogproof.errors import InvalidInputError
+from fogproof.input_files import read_requests
 from fogproof.oracle import Limits, schema, serve
 from fogproof.quantities import quantities
 
@@ -98,11 +99,7 @@ def _stdin() -> Callable[[int], bytes]:
 
 def _file(path: str) -> Callable[[int], bytes]:
     """Return how to read a file: as it is if it holds lines of JSON, as one line if it holds one object on several."""
-    try:
-        with open(path, "rb") as file:
-            content = file.read()
-    except OSError as error:
-        raise InvalidInputError(f"cannot read the request file {path}: {error.strerror}", path) from None
+    content = read_requests(path)
     if _is_json(content) or not any(map(_is_json, content.split(b"\n"))):
         content = content.replace(b"\n", b" ")
     return io.BytesIO(content).read1

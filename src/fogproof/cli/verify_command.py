@@ -119,18 +119,32 @@ def _describe(width: int, result: Result) -> str:
     verdict = result.verdict
     if verdict is None:
         return _row(width, result.case.name, result.status, "", one_line(result.reason), "", f"{result.seconds:.2f}")
-    p = "" if verdict.p_value is None else f"{verdict.p_value:.2g}"
+    rejecting = [finding for finding in verdict.findings if finding.outcome == "rejected"]
+    smallest = (
+        min((f.p_value for f in rejecting if f.p_value is not None), default=None) if rejecting else verdict.p_value
+    )
+    p = f"{smallest:.2g}" if smallest is not None else "certain" if rejecting else ""
     resolution = "" if verdict.resolution is None else f"{verdict.resolution.value:.2g} {verdict.resolution.kind}"
+    if rejecting:  # what did it, not what would have been seen besides
+        more = f" and {len(rejecting) - 1} more" if len(rejecting) > 1 else ""
+        resolution = f"by {rejecting[0].check}{more}" + (f"; likely {verdict.cause}" if verdict.cause else "")
     outcome = verdict.outcome if result.status in ("passed", "rejected", "inconclusive") else f"{result.status}"
     return _row(width, result.case.name, outcome, p, resolution, str(verdict.samples), f"{result.seconds:.2f}")
 
 
 def _explain(results: list[Result], seed: int, parts: dict[str, float]) -> None:
+    told: dict[str, list[Result]] = {}
     for result in results:
         if not result.good:
+            told.setdefault(_sort(result), []).append(result)
+    for sort, alike in told.items():
+        for result in alike[:_TOLD]:
             again = reproduce(result.case, seed, parts[result.case.origin]) + (" --twins" if result.twin else "")
             for what in _faults(result):
                 say(f"\n{result.case.name}: {what}\n  reproduce: {again}", err=True)
+        if more := [one_line(result.case.name) for result in alike[_TOLD:]]:
+            shown = ", ".join(more[:8]) + (f" and {len(more) - 8} others" if len(more) > 8 else "")
+            say(f"\n{len(more)} more of the same sort ({sort}): {shown}", err=True)
     counts: dict[str, int] = {}
     for result in results:
         counts[result.status] = counts.get(result.status, 0) + 1
@@ -139,6 +153,19 @@ def _explain(results: list[Result], seed: int, parts: dict[str, float]) -> None:
     rejected = sum(twin.outcome == "rejected" for twin in twins)
     caught = f"; {rejected} of {len(twins)} broken twins rejected" if twins else ""
     say(f"{len(results)} cases: {summary}{caught}; seed {seed}", err=True)
+
+
+_TOLD = 2
+"""Cases of one sort that are told in full: where one cause rejects many, the first are explanation enough."""
+
+
+def _sort(result: Result) -> str:
+    """Return what cases that came out wrong in the same way share: outcome and likely cause."""
+    if result.verdict is None:
+        return f"{result.status}: {one_line(result.reason)[:60]}"
+    if result.good or result.status in ("passed", "known"):
+        return "broken twin not rejected"
+    return f"{result.status}, likely {result.verdict.cause}" if result.verdict.cause else result.status
 
 
 def _faults(result: Result) -> list[str]:

@@ -34,6 +34,26 @@ from fogproof.domains.sphere import SpherePart, UnitHemisphere, UnitSphere
 from fogproof.domains.spherical_triangle import SphericalTriangle
 from fogproof.domains.triangle import Triangle
 
+KINDS: dict[str, type] = {
+    "sphere": UnitSphere,
+    "hemisphere": UnitHemisphere,
+    "spherical-triangle": SphericalTriangle,
+    "disk": UnitDisk,
+    "square": UnitSquare,
+    "rectangle": Rectangle,
+    "triangle": Triangle,
+    "box": Box,
+    "ball": Ball,
+    "rotations": Rotations,
+    "interval": Interval,
+    "half-line": HalfLine,
+    "line": RealLine,
+    "discrete": Discrete,
+    "product": Product,
+}
+"""The `kind` of each domain in files; its other keys are the arguments of the class, `parts` those of a product. A `SpherePart` is
+a function, which no file holds."""
+
 __all__ = [
     "Ball",
     "Box",

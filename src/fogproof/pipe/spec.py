@@ -23,25 +23,6 @@ from fogproof.scene.media import AnyMediumField
 from fogproof.scene.phase import PhaseFunctionField
 from fogproof.validate import Channels, number
 
-DOMAINS: dict[str, type] = {
-    "sphere": domains.UnitSphere,
-    "hemisphere": domains.UnitHemisphere,
-    "spherical-triangle": domains.SphericalTriangle,
-    "disk": domains.UnitDisk,
-    "square": domains.UnitSquare,
-    "rectangle": domains.Rectangle,
-    "triangle": domains.Triangle,
-    "box": domains.Box,
-    "ball": domains.Ball,
-    "rotations": domains.Rotations,
-    "interval": domains.Interval,
-    "half-line": domains.HalfLine,
-    "line": domains.RealLine,
-    "discrete": domains.Discrete,
-    "product": domains.Product,
-}
-"""The `kind` of each domain in spec files; its other keys are the arguments of the class, `parts` those of a product."""
-
 
 @dataclass(frozen=True)
 class Atom:
@@ -238,19 +219,19 @@ def _domain(table: Any, origin: str) -> Domain:
     """Return the domain of a table with a kind, or of its kind alone."""
     table = {"kind": table} if isinstance(table, str) else table
     kind = table.get("kind") if isinstance(table, dict) else None
-    if not isinstance(kind, str) or kind not in DOMAINS:
+    if not isinstance(kind, str) or kind not in domains.KINDS:
         said = f"domain has kind {shorten(kind)}" if isinstance(table, dict) else f"domain is {shorten(table)}"
-        raise InvalidInputError(f"{origin}: {said}; known are {', '.join(DOMAINS)}", "domain")
+        raise InvalidInputError(f"{origin}: {said}; known are {', '.join(domains.KINDS)}", "domain")
     rest = {key: _plain(value) for key, value in table.items() if key != "kind"}
     try:
         if kind == "product":
             parts = rest.get("parts", ())
             return domains.Product(*(_domain(part, origin) for part in parts))
-        made: Domain = DOMAINS[kind](**rest)
+        made: Domain = domains.KINDS[kind](**rest)
     except InvalidValueError as error:
         raise error.inside("domain", origin) from None
     except TypeError as error:
-        told = str(error).replace(f"{DOMAINS[kind].__name__}.__init__()", kind)
+        told = str(error).replace(f"{domains.KINDS[kind].__name__}.__init__()", kind)
         raise InvalidInputError(f"{origin}: domain {told}", "domain") from None
     return made
 

@@ -12,6 +12,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from fogproof.errors import InvalidInputError, InvalidValueError, shorten
 from fogproof.input_files import read_text
 from fogproof.scene.image_scenes import ImageScene
@@ -20,7 +22,8 @@ from fogproof.scene.scenes import Scene
 
 def read_scene(path: str | Path) -> Scene:
     """Read a scene from a TOML file. Every fault is a `FogproofError` that names the file and the key."""
-    return read_fields({"scene": Scene}, {"scene": _table(Path(path))}, str(path))["scene"]
+    scene: Scene = read_fields({"scene": Scene}, {"scene": _table(Path(path))}, str(path))["scene"]
+    return scene
 
 
 def read_image_scene(path: str | Path) -> ImageScene:
@@ -29,7 +32,8 @@ def read_image_scene(path: str | Path) -> ImageScene:
     if "camera" not in table:
         fix = "add a [camera] table: kind, origin, target, film = { width, height }"
         raise InvalidInputError(f"{path}: camera is missing; {fix}", "camera")
-    return read_fields({"scene": ImageScene}, {"scene": table}, str(path))["scene"]
+    scene: ImageScene = read_fields({"scene": ImageScene}, {"scene": table}, str(path))["scene"]
+    return scene
 
 
 def _table(path: Path) -> dict[str, Any]:
@@ -60,7 +64,8 @@ def read_fields(types: dict[str, Any], data: Any, origin: str) -> dict[str, Any]
     if not isinstance(data, dict):
         raise InvalidInputError(f"{origin}: must be a table of keys, got {shorten(data)}")
     try:
-        model = input_model(types).model_validate_json(json.dumps(_with_infinities(data)))
+        with np.errstate(all="ignore"):  # a length that overflows is judged as the infinity that it is
+            model = input_model(types).model_validate_json(json.dumps(_with_infinities(data)))
     except pydantic.ValidationError as error:
         raise _complaint(error, data, origin) from None
     return {name: getattr(model, name) for name in types}

@@ -43,4 +43,4 @@ class Ray:
     @property
     def shape(self) -> tuple[int, ...]:
         """The shape of the batch, () for a single ray."""
-        return self.length.shape
+        return tuple(self.length.shape)

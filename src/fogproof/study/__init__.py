@@ -5,6 +5,6 @@
 
 from fogproof.study.conduct import run_study
 from fogproof.study.files import Study, StudyScene, read_study
-from fogproof.study.store import StoreError
+from fogproof.study.store_faults import StoreError
 
 __all__ = ["StoreError", "Study", "StudyScene", "read_study", "run_study"]

@@ -8,7 +8,7 @@ from typing import cast
 
 import numpy as np
 
-from fogproof.checks import batch_generator
+from fogproof.checks.streams import batch_generator
 from fogproof.contracts import Draws, Estimator
 from fogproof.errors import SubjectError
 from fogproof.study.cells import SOBOL_CALL, Cell, cells_of_text

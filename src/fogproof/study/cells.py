@@ -14,7 +14,8 @@ import numpy as np
 from fogproof.contracts import Estimator, Reference
 from fogproof.errors import FogproofError, InvalidInputError, UnsupportedError
 from fogproof.study.files import Study, StudyScene, study_of
-from fogproof.study.methods.table import Method, name_of
+from fogproof.study.methods.method import Method
+from fogproof.study.methods.table import name_of
 from fogproof.study.sobol import SobolSequence
 
 Points = Literal["random", "sobol"]

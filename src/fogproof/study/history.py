@@ -34,7 +34,7 @@ def compare(before: dict[str, Any], after: dict[str, Any], alpha: float = 1e-6) 
         "before": {
             key: before[key] for key in ("title", "started", "fogproof", "fingerprint", "digest", "environment")
         },
-        "same_draws": before["digest"] == after["digest"],
+        "same_draws": not gone and not new and all(old["moments"] == young["moments"] for _, old, young in pairs),
         "alpha": alpha,
         "mood": mood,
         "wander": wander,

@@ -16,7 +16,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from fogproof.checks import jsonable
+from fogproof.checks.verdict import jsonable
 from fogproof.errors import InvalidInputError, shorten
 from fogproof.input_files import read_text
 from fogproof.plan import plan
@@ -58,7 +58,9 @@ def make_record(
 ) -> dict[str, Any]:
     """Return the JSON-ready record of what is in the store.
 
-    "digest" sums up all that depends on the draws alone: it is the same wherever, and however often interrupted, they were made.
+    "digest" sums up all that no clock has touched: it is the same wherever, and however often interrupted, the draws were made. It
+    holds what this version's oracle and checks say of them as well: where those became stricter, equal draws have another digest,
+    and the comparison of two runs looks at their moments (`history`).
     """
     levels = levels_of(store.rows(), cells, batches)
     alpha = study.alpha / max(1, sum(map(tests_of, cells)))
@@ -75,7 +77,7 @@ def make_record(
         for scene in scenes
         if scene["question"]
     ]
-    return jsonable(
+    table: dict[str, Any] = jsonable(
         {
             "schema": SCHEMA,
             "kind": "study",
@@ -112,6 +114,7 @@ def make_record(
             "history": None,
         }
     )
+    return table
 
 
 _ANSWER = ("best", "best_unbiased", "text")

@@ -224,4 +224,4 @@ def _sum(*fields: str | bytes | int | float | None) -> int:
 
 def _whole(row: tuple[Any, ...], identity: str) -> bool:
     """Return whether a stored batch is what was written, and a batch of what has this identity."""
-    return _sum(identity, *row[:-1]) == row[-1]
+    return bool(_sum(identity, *row[:-1]) == row[-1])

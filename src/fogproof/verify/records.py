@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from fogproof.catalogue import Case
-from fogproof.checks import jsonable
+from fogproof.checks.verdict import jsonable
 from fogproof.oracle_error import oracle_errors
 from fogproof.plan import plan, scene_of
 from fogproof.verify.results import Result, exit_code
@@ -46,7 +46,7 @@ def record(
     ordered = sorted(results, key=lambda result: order[result.case.name])
     names = [case.name for case in asked] or [result.case.name for result in ordered]
     parts = shares(asked or [result.case for result in ordered], alpha)
-    return jsonable(
+    table: dict[str, Any] = jsonable(
         {
             "schema": SCHEMA,
             "kind": "verify",
@@ -65,6 +65,7 @@ def record(
             "cases": [_case_record(result, seed, parts[result.case.origin]) for result in ordered],
         }
     )
+    return table
 
 
 def reproduce(case: Case, seed: int, alpha: float) -> str:

@@ -14,8 +14,8 @@ from functools import partial
 from typing import Any
 
 from fogproof.catalogue import Case
-from fogproof.checks import batch_generator
 from fogproof.checks.limits import end_isolated, isolated
+from fogproof.checks.streams import batch_generator
 from fogproof.errors import FogproofError, NotInstalledError
 from fogproof.verify.results import Result, Status, TwinResult
 from fogproof.verify.selection import shares, whole
@@ -66,7 +66,7 @@ def run_case_alone(case: Case, seed: int, alpha: float, twins: bool = False, tim
     started = time.perf_counter()
     here = os.getcwd() if case.origin else ""
     try:
-        result = isolated(partial(_in_process, here, case.origin, case.name, seed, alpha, twins), time_limit)
+        result: Result = isolated(partial(_in_process, here, case.origin, case.name, seed, alpha, twins), time_limit)
     except FogproofError as error:
         return Result(case, "error", None, str(error), time.perf_counter() - started)
     return replace(result, case=case)

@@ -11,8 +11,8 @@ to people (for theta the forward cosine mu).
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -45,6 +45,8 @@ class Axis:
     counted    (m,) coordinate -> the increasing function of it that samples are counted in
     uncounted  its inverse
     shown      (m,) coordinate -> what people are shown
+    hidden     its inverse
+    breaks     (b,) where the density may jump
     """
 
     label: str
@@ -54,6 +56,8 @@ class Axis:
     counted: Map = _same
     uncounted: Map = _same
     shown: Map = _same
+    hidden: Map = _same
+    breaks: np.ndarray = field(default_factory=lambda: np.empty(0))
 
 
 @dataclass(frozen=True)
@@ -69,6 +73,14 @@ class Chart:
     to_point: Map
     count: Callable[[np.ndarray], tuple[np.ndarray, ...]]
     jacobian: Map
+
+    def cut(self, breaks: Mapping[str, np.ndarray]) -> Chart:
+        """Return the chart with further places at which boxes begin, given as people are shown them."""
+        axes = []
+        for axis in self.axes:
+            at = axis.hidden(breaks.get(axis.label, np.empty(0)))
+            axes.append(replace(axis, breaks=np.unique(at[(at > axis.low) & (at < axis.high)])))
+        return replace(self, axes=tuple(axes))
 
     def coordinates(self, x: np.ndarray) -> np.ndarray:
         """Return the (m, k) coordinates of points: exact to rounding, slower than `count`."""
@@ -138,7 +150,8 @@ def _sphere(highest: float, axis: np.ndarray) -> Chart:
         versine = (x * x + y * y) / (1 + np.abs(z))
         return np.where(z < 0, 2 - versine, versine), np.arctan2(y, x)
 
-    axes = (Axis("mu", 0.0, highest, True, _versine, _angle, np.cos), Axis("phi", -np.pi, np.pi, False))
+    mu = Axis("mu", 0.0, highest, True, _versine, _angle, np.cos, lambda mu: np.arccos(np.clip(mu, -1, 1)))
+    axes = (mu, Axis("phi", -np.pi, np.pi, False))
     return Chart(axes, to_point, count, lambda c: np.sin(c[:, 0]))
 
 
@@ -161,13 +174,14 @@ def _half_line(a: float, tail: Tail) -> Chart:
     def count(x: np.ndarray) -> tuple[np.ndarray, ...]:
         return (tail.cdf(np.maximum(x - a, 0)),)
 
-    shown = Axis("x", 0.0, 1.0, shown=lambda t: to_point(t[:, None]))
+    shown = Axis("x", 0.0, 1.0, shown=lambda t: to_point(t[:, None]), hidden=lambda x: count(x)[0])
     return Chart((shown,), to_point, count, lambda c: 1 / tail.density(tail.quantile(c[:, 0])))
 
 
 def _heavy_line(pilot: np.ndarray) -> Chart:
     law = RealLine().law(pilot)
-    shown = Axis("x", 0.0, 1.0, shown=lambda t: law.place(t[:, None]))
+    hidden = lambda x: law.coordinates(x, x)[:, 0]  # noqa: E731
+    shown = Axis("x", 0.0, 1.0, shown=lambda t: law.place(t[:, None]), hidden=hidden)
     return Chart((shown,), law.place, lambda x: (law.coordinates(x, x)[:, 0],), lambda c: 1 / law.density(law.place(c)))
 
 
@@ -187,7 +201,7 @@ def _real_line(pilot: np.ndarray) -> Chart:
     def jacobian(c: np.ndarray) -> np.ndarray:
         return 0.25 * spread * (c[:, 0] * (1 - c[:, 0])) ** -1.5
 
-    shown = Axis("x", 0.0, 1.0, shown=lambda t: to_point(t[:, None]))
+    shown = Axis("x", 0.0, 1.0, shown=lambda t: to_point(t[:, None]), hidden=lambda x: count(x)[0])
     return Chart((shown,), to_point, count, jacobian)
 
 

@@ -30,8 +30,8 @@ _COARSE = 32  # cells along each axis of the plane
 _FINEST_PLANE = 512
 _INDEPENDENT = 1e-4  # axes are independent if no coarse cell differs by more than this share
 _NO_BLUR = 1e-12  # of probability: what double precision does
-_REGIONS = 64  # of an axis in which the effect of rounding is averaged
-_NUDGED = 2048  # points that show the effect of rounding
+_LAST_PLACES = 16  # units in the last place that a given map may be off
+_REGIONS = 64  # cells of a pilot along each axis
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,8 @@ class GridPlane:
 
     rows         two (m,) arrays: the row or column of the counted plane that each fine cell of an axis belongs to
     shares       two (size,) arrays: the probability of each counted row and column
-    blurs        two (size + 1,) arrays: the blur of the marginal at the edges of those rows and columns
+    along        (size + 1,) probability that rounding moves a sample across each edge of the counted rows
+    across       (size,) probability that it moves a sample of each row into or out of one of its cells
     mass         (32, 32) probability of the coarse cells
     error        (32, 32) bound on its error
     independent  whether the axes are independent: finer cells then have known probabilities too
@@ -99,7 +100,8 @@ class GridPlane:
 
     rows: tuple[np.ndarray, np.ndarray]
     shares: tuple[np.ndarray, np.ndarray]
-    blurs: tuple[np.ndarray, np.ndarray]
+    along: np.ndarray
+    across: np.ndarray
     mass: np.ndarray
     error: np.ndarray
     independent: bool
@@ -117,12 +119,12 @@ class GridPlane:
 
     def blur(self, size: int) -> np.ndarray:
         """Return (size, size) the probability that rounding moves into or out of each of as many cells."""
-        if max(float(edges.max()) for edges in self.blurs) < _NO_BLUR:
+        if max(float(self.along.max()), float(self.across.max())) < _NO_BLUR:
             return np.zeros((size, size))
         step = self.size // size
-        shares = [share.reshape(size, step).sum(axis=1) for share in self.shares]
-        moved = [edges[::step][:-1] + edges[::step][1:] for edges in self.blurs]
-        return moved[0][:, None] * shares[1] + shares[0][:, None] * moved[1]
+        share = self.shares[1].reshape(size, step).sum(axis=1)
+        rows = self.along[::step][:-1] + self.along[::step][1:]
+        return np.asarray(rows[:, None] * share + self.across.reshape(size, step).sum(axis=1)[:, None])
 
 
 @dataclass(frozen=True)
@@ -156,8 +158,12 @@ def refilled(grid: Grid, chart: Chart, leaves: Leaves, samples: int) -> Grid:
     """Return the same cells with the probabilities of better known leaves."""
     new = _filled(chart, leaves, [m.edges for m in grid.marginals], samples)
     marginals = zip(new.marginals, grid.marginals, strict=True)
-    plane = new.plane if new.plane is None or grid.plane is None else replace(new.plane, blurs=grid.plane.blurs)
-    return Grid(tuple(replace(m, blur=old.blur) for m, old in marginals), plane)
+    plane = (
+        new.plane
+        if new.plane is None or grid.plane is None
+        else replace(new.plane, along=grid.plane.along, across=grid.plane.across)
+    )
+    return Grid(tuple(replace(m, blur=before.blur) for m, before in marginals), plane)
 
 
 def _filled(chart: Chart, leaves: Leaves, edges: list[np.ndarray], samples: int) -> Grid:
@@ -205,47 +211,6 @@ def _marginal(axis: Axis, curve: Curve, edges: np.ndarray, error: tuple[np.ndarr
     return Marginal(axis.label, edges, shown, cdf, before / total, at_edge / total, none, axis.ends, lookup, at)
 
 
-def blurred(grid: Grid, chart: Chart, points: np.ndarray, nudges: list[np.ndarray], roundoff: float) -> Grid:
-    """Return the grid with the probability that rounding moves a sample across each edge.
-
-    points  (q, ...) where the effect of rounding is seen, and `nudges`, the same points moved by it
-    """
-    if len(points) == 0:
-        return grid
-    marginals = grid.marginals
-    points, nudges = points[:_NUDGED], [nudged[:_NUDGED] for nudged in nudges]
-    counted = chart.count(points)
-    moved = [chart.count(nudged) for nudged in nudges]
-    result = []
-    for axis, marginal in enumerate(marginals):
-        at = np.interp(counted[axis], marginal.edges, marginal.cdf)
-        step = 4 * roundoff * (marginal.edges[-1] - marginal.edges[0])
-        others = [counted[axis] - step, counted[axis] + step, *(m[axis] for m in moved)]
-        shift = np.max([np.abs(np.interp(o, marginal.edges, marginal.cdf) - at) for o in others], axis=0)
-        shift = np.where(shift > 0.5, 1 - shift, shift) if not marginal.ends else shift
-        region = np.minimum((at * _REGIONS).astype(np.intp), _REGIONS - 1)
-        total, count = np.bincount(region, shift, _REGIONS), np.bincount(region, minlength=_REGIONS)
-        mean = np.divide(total, count, out=np.full(_REGIONS, float(np.mean(shift))), where=count > 0)
-        mean = np.max([mean, np.append(mean[1:], 0), np.append(0, mean[:-1])], axis=0)
-        blur = mean[np.minimum((marginal.cdf * _REGIONS).astype(np.intp), _REGIONS - 1)]
-        if not marginal.ends:
-            # Where the other axis is within rounding of a pole, an angle about the pole says nothing.
-            pole = marginals[1 - axis]
-            near = 4 * roundoff * (pole.edges[-1] - pole.edges[0])
-            low, high = np.interp([pole.edges[0] + near, pole.edges[-1] - near], pole.edges, pole.cdf)
-            blur = blur + low + (1 - high)
-        blur[[0, -1]] = 0.0
-        result.append(replace(marginal, blur=blur))
-    plane = grid.plane
-    if plane is not None:
-        first, second = (
-            m.blur[np.append(np.searchsorted(rows, np.arange(plane.size)), len(rows))]
-            for m, rows in zip(result, plane.rows, strict=True)
-        )
-        plane = replace(plane, blurs=(first, second))
-    return Grid(tuple(result), plane)
-
-
 def _plane(chart: Chart, leaves: Leaves, marginals: tuple[Marginal, ...], samples: int) -> GridPlane:
     size = 1 << int(np.clip(0.5 * np.log2(max(samples, 1) / 2), np.log2(_COARSE), np.log2(_FINEST_PLANE)))
     rows, shares, edges = [], [], []
@@ -263,7 +228,7 @@ def _plane(chart: Chart, leaves: Leaves, marginals: tuple[Marginal, ...], sample
     independent = bool(np.all(np.abs(mass - product) <= _INDEPENDENT * product + error))
     independent = independent and bool(np.all(error <= 1e-3 * product + 1e-9))
     none = np.zeros(size + 1)
-    return GridPlane((rows[0], rows[1]), (shares[0], shares[1]), (none, none), mass, error, independent)
+    return GridPlane((rows[0], rows[1]), (shares[0], shares[1]), none, none[1:], mass, error, independent)
 
 
 def pilot_grid(labels: tuple[str, ...], u: np.ndarray) -> Grid:
@@ -280,20 +245,22 @@ def pilot_grid(labels: tuple[str, ...], u: np.ndarray) -> Grid:
     return Grid(tuple(marginals), None)
 
 
-def unit_square_grid(labels: tuple[str, str], samples: int) -> Grid:
-    """Return the cells of the unit square, where a right sampler's points are uniform under their Rosenblatt map."""
-    cells = cells_wanted(samples, 2)
-    edges = np.arange(cells + 1) / cells
-    error, none, lookup = np.full(cells + 1, 1e-14), np.zeros(cells + 1), Lookup.of(edges)
+def unit_cube_grid(labels: tuple[str, ...], samples: int, roundoff: float) -> Grid:
+    """Return the cells of the unit cube, where a right sampler's points are uniform under a given map."""
+    cells = cells_wanted(samples, min(len(labels), 2))
+    edges, slack = np.arange(cells + 1) / cells, max(_LAST_PLACES * roundoff, 1e-14)
+    error, none, lookup = np.full(cells + 1, slack), np.zeros(cells + 1), Lookup.of(edges)
     marginals = tuple(
-        Marginal(f"cdf of {label}", edges, edges, edges, none, error, none, True, lookup, lambda c: c)
-        for label in labels
+        Marginal(label, edges, edges, edges, none, error, none, True, lookup, lambda c: c) for label in labels
     )
+    if len(labels) != 2:
+        return Grid(marginals, None)
     size = 1 << int(np.clip(0.5 * np.log2(max(samples, 1) / 2), np.log2(_COARSE), np.log2(_FINEST_PLANE)))
     rows = (np.arange(cells) * size) // cells
     mass = np.full((_COARSE, _COARSE), _COARSE**-2.0)
     share, zero = np.full(size, 1 / size), np.zeros(size + 1)
-    return Grid(marginals, GridPlane((rows, rows), (share, share), (zero, zero), mass, np.full_like(mass, 1e-14), True))
+    error = np.full_like(mass, slack)
+    return Grid(marginals, GridPlane((rows, rows), (share, share), zero, zero[1:], mass, error, True))
 
 
 def _masses(leaves: Leaves, first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -51,10 +51,10 @@ def second_view(chart: Chart, density: Density, pilot: np.ndarray, effort: Effor
         inner = (
             np.quantile(pilot[:, 0], (np.arange(_PANELS // 2) + 0.5) / (_PANELS // 2)) if len(pilot) else np.empty(0)
         )
-        breaks = np.unique(np.concatenate([inner, _shifted(chart.axes[0], _SPREAD)]))
+        breaks = np.unique(np.concatenate([inner, _shifted(chart.axes[0], _SPREAD), chart.axes[0].breaks]))
         low, high = breaks[:-1, None], breaks[1:, None]
     else:
-        low, high = corners(tuple(_shifted(axis, _PLANE) for axis in chart.axes))
+        low, high = corners(tuple(np.union1d(_shifted(axis, _PLANE), axis.breaks) for axis in chart.axes))
     leaves = integrate(density, low, high, effort.tolerance, effort.budget, effort.noise)
     if len(chart.axes) == 1:
         return looked_at(density, leaves, np.sort(pilot[:, 0]), effort)
@@ -71,7 +71,7 @@ def _line(chart: Chart, density: Density, pilot: np.ndarray, effort: Effort) -> 
     low, high = chart.axes[0].low, chart.axes[0].high
     inner = np.quantile(pilot, np.arange(_PANELS + 1) / _PANELS) if len(pilot) else np.empty(0)
     inner = inner[(inner > low) & (inner < high)]
-    breaks = np.unique(np.concatenate([inner, np.linspace(low, high, _SPREAD + 1)]))
+    breaks = np.unique(np.concatenate([inner, np.linspace(low, high, _SPREAD + 1), chart.axes[0].breaks]))
     leaves = integrate(density, breaks[:-1, None], breaks[1:, None], effort.tolerance, effort.budget, effort.noise)
     leaves = looked_at(density, leaves, np.sort(pilot), effort)
     probes = np.concatenate([[1e-9], (np.arange(_PROBES) + 0.5) / _PROBES, [1 - 1e-9]])
@@ -135,12 +135,19 @@ def _cut_around(left: np.ndarray, right: np.ndarray, around: np.ndarray) -> tupl
 
 
 def _plane(chart: Chart, density: Density, pilot: np.ndarray, effort: Effort) -> Leaves:
-    low, high = corners(tuple(np.linspace(axis.low, axis.high, _PLANE + 1) for axis in chart.axes))
+    low, high = corners(tuple(_cuts(axis) for axis in chart.axes))
     leaves = integrate(density, low, high, effort.tolerance, min(_FIRST, effort.budget), effort.noise)
     if not leaves.total_error <= _HOPELESS:
         return leaves
     leaves = refine(density, leaves, effort.tolerance, effort.budget, effort.noise)
     return looked_at_plane(density, leaves, pilot[:_POINTS], effort)
+
+
+def _cuts(axis: Axis) -> np.ndarray:
+    """Return where the first boxes of an axis begin and end."""
+    if len(axis.breaks):
+        return np.concatenate([[axis.low], axis.breaks, [axis.high]])
+    return np.linspace(axis.low, axis.high, _PLANE + 1)
 
 
 def looked_at_plane(density: Density, leaves: Leaves, points: np.ndarray, effort: Effort) -> Leaves:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -73,7 +74,7 @@ class Contrast:
         cells = min(_CELLS, max(len(x) // _PER_CELL, 1), len(tree.share))
         return Contrast(law, tree, x, z, q, leaf * cells // len(tree.share))
 
-    @property
+    @cached_property
     def points(self) -> np.ndarray:
         """All points, the samples first."""
         return np.concatenate([self.x, self.z])

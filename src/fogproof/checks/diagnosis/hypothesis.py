@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -21,13 +22,21 @@ class Setting:
 
     domain: Domain
     law: Law
-    p: Density
+    claim: Density
     contrast: Contrast
+
+    def p(self, x: np.ndarray) -> np.ndarray:
+        """Return the claimed density; at all points of the contrast, where nearly every hypothesis asks, it is known."""
+        return self._at_points if x is self.contrast.points else self.claim(x)
+
+    @cached_property
+    def _at_points(self) -> np.ndarray:
+        return self.claim(self.contrast.points)
 
     def claimed_mean(self) -> np.ndarray:
         """Return the mean of the points under the claimed density."""
-        z, q = self.contrast.z, self.contrast.q[len(self.contrast.x) :]
-        weight = self.p(z) / q
+        z, n = self.contrast.z, len(self.contrast.x)
+        weight = self._at_points[n:] / self.contrast.q[n:]
         return np.tensordot(weight, z, axes=1) / max(float(weight.sum()), 1e-300)
 
     def moved(self, back: Callable[[np.ndarray], np.ndarray]) -> Density:

@@ -13,7 +13,7 @@ import numpy as np
 
 from fogproof.checks.statistics.evenness import CALLS, GROUPS, evenness_test
 from fogproof.checks.statistics.goodness import binomial_p
-from fogproof.checks.statistics.moments import Moments
+from fogproof.checks.statistics.moments import Moments, mean_of
 from fogproof.checks.statistics.tails import binomial_at_least, binomial_at_most, gamma_above, normal_two_sided
 from fogproof.checks.verdict import Finding, Outcome
 
@@ -87,7 +87,7 @@ class Succession:
                 pairs[way] += left.shape[1]
                 both[way] += [np.count_nonzero(a & b) for a, b in zip(left, right, strict=True)]
             alike += int(np.count_nonzero(prints[here][1:] == prints[here][:-1]))
-            means.append((size, np.mean(x[here], axis=0)))
+            means.append((size, mean_of(x[here])))
             if size >= _ENOUGH and len(self.counts) + len(counts) < CALLS:
                 counts.append(_counted(x[here], self.edges))
             if len(self.windows) < _MOST_WINDOWS:

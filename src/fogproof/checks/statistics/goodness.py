@@ -11,22 +11,33 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fogproof.checks.density.grid import Marginal
+from fogproof.checks.density.grid import GridPlane, Marginal
 from fogproof.checks.statistics.tails import (
     binomial_at_least,
     binomial_at_most,
     binomial_interval,
     chi_square_above,
+    chi_square_detected,
     gamma_above,
+    normal_quantile,
 )
 from fogproof.checks.verdict import EffectInterval, Finding, Outcome, Resolution
 
 MISS = 0.01
 """Every resolution is stated for this probability of missing the error."""
 
+HIDDEN = 0.5
+"""Root mean square of the ratio of densities less 1: where rounding could explain so much, seeing nothing is no pass."""
+
+EXPLAINED = "; rounding explains any difference there could be: nothing can be told"
+"""What is said where single precision leaves nothing to see."""
+
+_FEWEST = 4  # cells along each axis of the plane
 _LEAST = 20.0  # samples expected in a cell: the chi-square law is then accurate far into its tail
 _BLURRED = 0.1  # standard deviations of a count: an expectation known less well makes a test inconclusive
+_CONTINUOUS = 8  # cells: with fewer, the statistic takes few values
 _EXACT = 0.01  # standard deviations: an expectation known better leaves p-values uniform
+_MOVED = 0.1  # of probability that rounding may move: where that is not seen, nothing is known
 
 
 def kolmogorov(name: str, marginal: Marginal, counts: np.ndarray, alpha: float) -> Finding:
@@ -51,9 +62,10 @@ def kolmogorov(name: str, marginal: Marginal, counts: np.ndarray, alpha: float) 
     )
     message = f"largest distance between the cumulative distributions in {marginal.label} is {seen:.3g}"
     blurred = bool(np.max(marginal.error) * math.sqrt(n) > _BLURRED)
-    outcome: Outcome = "rejected" if p <= alpha else "inconclusive" if blurred else "not rejected"
+    hidden = blind > _MOVED and not marginal.whole
+    outcome: Outcome = "rejected" if p <= alpha else "inconclusive" if blurred or hidden else "not rejected"
     if outcome == "inconclusive":
-        message += "; the cdf is known too coarsely to tell: give one, or a smoother pdf"
+        message += "; the cdf is known too coarsely to tell: give one, or a smoother pdf" if blurred else EXPLAINED
     if p <= alpha:
         share, claim = marginal.cdf[where] + signed[where], marginal.cdf[where]
         message += f": {share:.4g} of the samples have {below(marginal, where)}, the pdf says {claim:.4g}"
@@ -96,13 +108,14 @@ def chi_square_along(name: str, marginal: Marginal, counts: np.ndarray, cells: i
     cells = max(min(cells, int(n / _LEAST), len(counts)), 1)
     while True:
         at = np.unique(np.arange(cells + 1) * len(counts) // cells)
-        error = marginal.doubt(at[:-1], at[1:])
-        if cells < 32 or np.all(error <= _BLURRED * np.sqrt(np.diff(marginal.cdf[at]) / max(n, 1))):
+        error, mass = marginal.doubt(at[:-1], at[1:]), np.diff(marginal.cdf[at])
+        blur = marginal.blur[at[:-1]] + marginal.blur[at[1:]]
+        sharp = np.all(error <= _BLURRED * np.sqrt(mass / max(n, 1))) and not drowned(n, mass, blur)
+        if cells < 32 or sharp:
             break
         cells //= 2  # fewer samples fluctuate in smaller cells: what is known of larger ones may be enough
+    finding = chi_square(name, np.add.reduceat(counts, at[:-1]), mass, error, blur, alpha)
     observed = np.add.reduceat(counts, at[:-1])
-    blur = marginal.blur[at[:-1]] + marginal.blur[at[1:]]
-    finding = chi_square(name, observed, np.diff(marginal.cdf[at]), error, blur, alpha)
     return finding if finding.outcome != "rejected" else finding.located(between_worst(marginal, at, observed))
 
 
@@ -145,14 +158,58 @@ def chi_square(
     statistic = float(np.sum(deviances(observed, nearest))) / bartlett
     p = chi_square_above(cells - 1, statistic)
     blurred = bool(np.any(error > _BLURRED * sigma))
-    outcome: Outcome = "rejected" if p <= alpha else "inconclusive" if blurred else "not rejected"
+    hides = math.sqrt(float(np.sum(slack**2 / expected)) / n)
+    hidden = statistic == 0 and hides > HIDDEN
+    outcome: Outcome = "rejected" if p <= alpha else "inconclusive" if blurred or hidden else "not rejected"
     effect = float(0.5 * np.sum(np.abs(observed - expected)) / n)
     message = f"chi-square = {statistic:.5g} on {cells - 1} degrees of freedom"
     if outcome == "inconclusive":
-        message += "; the expected masses are known too coarsely to tell: give a cdf, or a smoother pdf"
-    exact = bool(np.all(slack <= _EXACT * sigma))
+        coarse = "; the expected masses are known too coarsely to tell: give a cdf, or a smoother pdf"
+        message += coarse if blurred else EXPLAINED
+    exact = bool(np.all(slack <= _EXACT * sigma)) and cells >= _CONTINUOUS
     cause = "shape" if outcome == "rejected" else ""
-    return Finding(name, outcome, message, p, alpha, exact, statistic, effect, cause=cause)
+    seen = math.sqrt(bartlett * chi_square_detected(cells - 1, alpha, MISS) / n) + hides
+    resolution = Resolution(unevenness(cells), seen, MISS)
+    return Finding(name, outcome, message, p, alpha, exact, statistic, effect, resolution=resolution, cause=cause)
+
+
+def unevenness(cells: int) -> str:
+    """Return the name of the misfit that a chi-square on so many cells sees."""
+    return f"misfit that is even in each of {cells} cells (root mean square of the ratio of densities less 1)"
+
+
+def drowned(n: float, mass: np.ndarray, blur: np.ndarray) -> bool:
+    """Return whether rounding may move more samples in and out of most cells than chance does."""
+    return bool(n * np.mean(blur**2 / np.maximum(mass, 1e-300)) > 1)
+
+
+def joint(name: str, plane: GridPlane, counts: np.ndarray, alpha: float) -> Finding:
+    """Likelihood-ratio test of the counts (32, 32) on the coarse plane, or on fewer cells if rounding drowns these."""
+    cells, n = len(plane.mass), float(counts.sum())
+    while cells > _FEWEST and drowned(n, blocks(plane.mass, cells), plane.blur(cells)):
+        cells //= 2
+    observed, mass, error = (blocks(values, cells) for values in (counts, plane.mass, plane.error))
+    return chi_square(name, observed, mass, error, plane.blur(cells), alpha)
+
+
+def joint_fine(name: str, plane: GridPlane, counts: np.ndarray, alpha: float) -> Finding:
+    """Pearson's test on the finest plane of independent axes, counts (size, size), that rounding does not drown."""
+    cells, n = plane.size, float(counts.sum())
+    while True:
+        first, second = (share.reshape(cells, -1).sum(axis=1) for share in plane.shares)
+        mass, blur = first[:, None] * second, plane.blur(cells)
+        if cells <= len(plane.mass) or not drowned(n, mass, blur):
+            break
+        cells //= 2
+    return chi_square_sparse(name, blocks(counts, cells).ravel(), mass.ravel(), blur.ravel(), alpha)
+
+
+def blocks(values: np.ndarray, size: int) -> np.ndarray:
+    """Return the sums of square blocks of (n, n) values, (size, size)."""
+    if len(values) == size:
+        return values
+    step = len(values) // size
+    return np.asarray(values.reshape(size, step, size, step).sum(axis=(1, 3)))
 
 
 def deviances(observed: np.ndarray, expected: np.ndarray) -> np.ndarray:
@@ -185,10 +242,37 @@ def chi_square_sparse(name: str, counts: np.ndarray, mass: np.ndarray, blur: np.
     rejected = p <= alpha
     uneven = max((statistic - cells) / max(n, 1), 0.0)
     message = f"chi-square = {statistic:.7g} on {cells - 1} degrees of freedom, {n / cells:.2g} samples a cell"
-    outcome: Outcome = "rejected" if rejected else "not rejected"
+    hides = math.sqrt(float(np.sum(blur**2 / mass)))
+    hidden = statistic == 0 and hides > HIDDEN
+    outcome: Outcome = "rejected" if rejected else "inconclusive" if hidden else "not rejected"
+    message += EXPLAINED if hidden else ""
+    seen = _reach(shape, scale, variance, alpha) / math.sqrt(n) + hides
+    resolution = Resolution(unevenness(cells), seen, MISS)
+    cause = "correlation" if rejected else ""
     return Finding(
-        name, outcome, message, p, alpha, exact, statistic, math.sqrt(uneven), cause="correlation" if rejected else ""
+        name,
+        outcome,
+        message,
+        p,
+        alpha,
+        exact,
+        statistic,
+        math.sqrt(uneven),
+        resolution=resolution,
+        cause=cause,
     )
+
+
+def _reach(shape: float, scale: float, variance: float, alpha: float) -> float:
+    """Return the root of the excess of a sum of squares with gamma's shape and scale that is found but for `MISS`."""
+    from scipy.special import gammainccinv
+
+    needed = scale * (float(gammainccinv(shape, alpha)) - shape)
+    miss = normal_quantile(MISS)
+    excess = needed + miss * math.sqrt(variance)
+    for _ in range(20):  # an uneven density makes the sum fluctuate more
+        excess = needed + miss * math.sqrt(variance + 4 * excess)
+    return math.sqrt(excess)
 
 
 def nothing_counted(name: str, alpha: float) -> Finding:

@@ -16,8 +16,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fogproof.checks.statistics.goodness import MISS, pooled
-from fogproof.checks.statistics.tails import gamma_above, normal_quantile
+from fogproof.checks.statistics.goodness import MISS, pooled, unevenness
+from fogproof.checks.statistics.tails import chi_square_detected, gamma_above, normal_quantile
 from fogproof.checks.verdict import Finding, Outcome, Resolution
 
 _EDGES = np.array([-4.0, -2.0, *np.arange(-1.0, 1.01, 0.25), 2.0, 4.0])  # of the levels, in log(w / (1 - w))
@@ -25,6 +25,7 @@ LEVELS = len(_EDGES) + 1
 _LEAST = 10.0  # variance of the sum of a cell whose square may enter a chi-square
 _NORMAL = 50.0  # variance from which on a sum's tail is the normal one, corrected for skewness
 _SKEW = 0.5  # largest exponent of that correction
+_THIRD = 0.3  # of the samples of a cell: a level at which more would have to be missing is too fine to speak of
 _TELLING = 100.0  # variance of all residuals: with less, nothing is said
 
 
@@ -163,7 +164,10 @@ def _chi_square(name: str, columns: np.ndarray, alpha: float) -> Finding:
     misfit = math.sqrt(max(statistic - cells, 0.0) / float(variance.sum()))
     message = f"chi-square = {statistic:.5g} on {cells} degrees of freedom"
     outcome: Outcome = "rejected" if rejected else "not rejected"
-    return Finding(name, outcome, message, p, alpha, True, statistic, misfit, cause="shape" if rejected else "")
+    seen = math.sqrt(chi_square_detected(cells, alpha, MISS) / float(variance.sum()))
+    resolution = Resolution(unevenness(cells), seen * (1 + 0.5 * seen), MISS)
+    cause = "shape" if rejected else ""
+    return Finding(name, outcome, message, p, alpha, True, statistic, misfit, resolution=resolution, cause=cause)
 
 
 def largest(name: str, describe: Callable[[int, int], str], sums: tuple[Sums, ...], alpha: float) -> Finding:
@@ -185,6 +189,7 @@ def _largest(name: str, describe: Callable[[int, int], str], sums: Sums, alpha: 
             residual, doubt = float(total[i]), float(variance[i])
     rejected = best <= alpha
     where = describe(*at)
+    resolution = _reach(sums, len(depths), alpha)
     message = f"the most conspicuous cell has {residual:+.4g} samples too {'many' if residual > 0 else 'few'}"
     if not rejected:
         message = f"no cell has too many or too few samples; {message}"
@@ -197,6 +202,24 @@ def _largest(name: str, describe: Callable[[int, int], str], sums: Sums, alpha: 
         False,
         residual,
         residual / max(doubt, 1.0),
+        resolution,
         region=(where,) if rejected else (),
         cause="shape" if rejected else "",
     )
+
+
+def _reach(sums: Sums, depths: int, alpha: float) -> Resolution | None:
+    """Return the factor on the pdf that is found in any one cell, of the deepest level whose cells have coins enough.
+
+    With V coins in doubt in a cell, samples fewer by a share s lie about s sqrt(V) standard deviations off: the pdf is then too
+    large by the factor 1 / (1 - s).
+    """
+    for depth in range(depths, 0, -1):
+        if 1 << depth <= sums.cells.shape[1]:
+            z = normal_quantile(alpha / (2.0 * depths * (1 << depth))) + normal_quantile(MISS)
+            share = z / math.sqrt(max(float(_folded(sums.cells, depth)[1].min()), 1e-300))
+            share += 0.5 * share**2  # what the tail is wider for skewness, or for Bennett's bound
+            if share <= _THIRD:
+                kind = f"factor on the pdf in one of {1 << depth} cells, off 1 by more than that,"
+                return Resolution(kind, share / (1 - share), MISS)
+    return None

@@ -39,8 +39,13 @@ def mean_test(
     alpha: float,
     cause: str = "bias",
     known: Known = NOTHING,
+    uncertain: float | None = None,
 ) -> Finding:
-    """Test that the expectation behind `data` lies within `error` of `reference`."""
+    """Test that the expectation behind `data` lies within `error` of `reference`.
+
+    uncertain  the part of the error by which the reference itself may be off, all of it unless given; the rest is tolerated
+    """
+    uncertain = error if uncertain is None else uncertain
     if data.n == 0:
         return Finding(name, "inconclusive", f"{what}: there are no data", alpha=alpha)
     share = alpha if known == replace(NOTHING, light=known.light) else (1 - LAWLESS) * alpha
@@ -56,10 +61,8 @@ def mean_test(
         p = extremes_p(data, reference - error, reference + error, known)
         if p <= alpha - share:
             finding = replace(finding, p_value=max(p, finding.p_value), exact=False, lawless=True)
-    if finding.outcome == "not rejected" and error > abs(reference) and error > data.stderr:
-        message = (
-            f"{finding.message}; the reference is known too coarsely, to within {error:.2g}, to tell it from nothing"
-        )
+    if finding.outcome == "not rejected" and uncertain > abs(reference) and uncertain > data.stderr:
+        message = f"{finding.message}; the reference is known too coarsely, to within {uncertain:.2g}, to tell it from nothing"
         finding = replace(finding, outcome="inconclusive", message=message, p_value=None, resolution=None)
     reach = normal_quantile(0.5 * MISS) * data.stderr
     effect = data.mean - reference

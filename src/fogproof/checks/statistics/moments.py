@@ -35,8 +35,7 @@ class Moments:
     def of(x: np.ndarray) -> Moments:
         """Return the moments of one batch (n,)."""
         low, high = float(np.min(x)), float(np.max(x))
-        large = max(abs(low), abs(high)) > _LARGE
-        mean = float(np.mean(x / _LARGE)) * _LARGE if large else float(np.mean(x))
+        mean = float(mean_of(x))
         mean = min(max(mean, low), high)  # rounding may leave the range
         scale = _scale_of(max(high - mean, mean - low))
         d = x - mean if scale == 1 else (x - mean) / scale
@@ -123,6 +122,12 @@ class Moments:
     def largest_share(self) -> float:
         """Share of the sum of squares that the most extreme number has."""
         return (self.largest / self.scale) ** 2 / self.m2 if self.m2 > 0 else 0.0
+
+
+def mean_of(x: np.ndarray) -> np.ndarray:
+    """Return the mean along the first axis; a sum of numbers that are nearly as large as there are does not overflow."""
+    large = max(abs(float(np.min(x))), abs(float(np.max(x)))) > _LARGE
+    return np.asarray(np.mean(x / _LARGE, axis=0) * _LARGE if large else np.mean(x, axis=0))
 
 
 def _scale_of(spread: float) -> float:

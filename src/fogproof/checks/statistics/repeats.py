@@ -7,12 +7,13 @@ lies beyond that is an undeclared atom, a generator of few values, or a stream t
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
 
 from fogproof.checks.statistics.goodness import MISS
-from fogproof.checks.statistics.tails import binomial_at_most, poisson_at_least
+from fogproof.checks.statistics.tails import binomial_at_most, normal_quantile, poisson_at_least
 from fogproof.checks.subject import Precision
 from fogproof.checks.verdict import Finding, Resolution
 from fogproof.domains import Domain, UnitHemisphere, UnitSphere
@@ -22,6 +23,7 @@ KEPT = 1 << 18
 
 _WINDOW = 32  # neighbours on either side that tell how far apart values are
 _EQUAL = 1e-6  # of that distance
+_CERTAIN = 0.999
 
 _SLACK = 8.0  # how much coarser than the result the numbers inside a sampler may be
 _UNIFORM: dict[Precision, float] = {"float64": 2.0**-53, "float32": 2.0**-24}
@@ -102,18 +104,44 @@ def repeats_test(name: str, prints: np.ndarray, expected: Callable[[int], float]
     allowed = _SLACK * expected(n)
     p = poisson_at_least(seen, max(allowed, 1e-300))
     message = f"{seen} of the first {n} points repeat an earlier one; rounding explains up to about {allowed:.2g}"
-    resolution = Resolution("probability of an undeclared atom", _smallest_atom(n, allowed, alpha), MISS)
+    resolution = _less_than_all("probability of an undeclared atom", _smallest_atom(n, allowed, alpha))
     if p > alpha:
         return Finding(name, "not rejected", message, p, alpha, False, seen, seen / max(n, 1), resolution)
     kind, cause = _kind_of_repetition(prints)
     return Finding(name, "rejected", f"{message}: {kind}", p, alpha, False, seen, seen / n, resolution, cause=cause)
 
 
-def _smallest_atom(n: int, allowed: float, alpha: float) -> float:
-    """Return the probability of a point whose repetitions among n points are more than `allowed` explains, but for `MISS`."""
+def _fewest(n: int, allowed: float, alpha: float) -> float:
+    """Return the probability of each of some equally likely values whose repetitions are noticed, but for `MISS`.
+
+    Among n values, 1 / p of them different at most, about n^2 p / 2 repeat an earlier one, as often as a Poisson number, or less
+    scattered.
+    """
+    least, z = _noticed(allowed, alpha), normal_quantile(MISS)
+    wanted = (0.5 * z + math.sqrt(0.25 * z * z + least)) ** 2 + 1
+    low, high = 0.0, 1.0
+    for _ in range(60):  # n - E[different ones], with (1 - exp(-n p)) / p different ones
+        p = 0.5 * (low + high)
+        low, high = (p, high) if n + math.expm1(-n * p) / p < wanted else (low, p)
+    return high
+
+
+def _less_than_all(kind: str, probability: float) -> Resolution | None:
+    """Return a resolution, None where not even a certainty would be noticed."""
+    return Resolution(kind, probability, MISS) if probability < _CERTAIN else None
+
+
+def _noticed(allowed: float, alpha: float) -> int:
+    """Return a number of repetitions that is rejected where about `allowed` are explained."""
     least = 1
     while poisson_at_least(least, max(allowed, 1e-300)) > alpha:
         least = max(least + 1, int(1.05 * least))
+    return least
+
+
+def _smallest_atom(n: int, allowed: float, alpha: float) -> float:
+    """Return the probability of a point whose repetitions among n points are more than `allowed` explains, but for `MISS`."""
+    least = _noticed(allowed, alpha)
     low, high = 0.0, 1.0
     for _ in range(40):
         middle = 0.5 * (low + high)
@@ -163,8 +191,10 @@ def coarse_test(name: str, label: str, t: np.ndarray, rounding: float, bits: int
     allowed = _SLACK * (n * _EQUAL + float(np.sum(merged)) + 0.5 * n * n * 2.0**-bits)
     p = poisson_at_least(seen, allowed)
     different = n - seen
+    kind = f"probability of each value of {label}, of a few equally likely ones,"
+    resolution = _less_than_all(kind, _fewest(n, allowed, alpha))
     message = f"{different} of {n} values of {label} differ; rounding explains up to about {allowed:.2g} equal ones"
     if p > alpha:
-        return Finding(name, "not rejected", message, p, alpha, False, seen, seen / n)
+        return Finding(name, "not rejected", message, p, alpha, False, seen, seen / n, resolution)
     values = f"{message}: {label} takes few values" if different < 0.9 * n else message
-    return Finding(name, "rejected", values, p, alpha, False, seen, seen / n, cause="coarse numbers")
+    return Finding(name, "rejected", values, p, alpha, False, seen, seen / n, resolution, cause="coarse numbers")

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fogproof.checks.density.grid import GridPlane, Marginal
-from fogproof.checks.statistics.goodness import MISS, between, binomial_p, deviances, nothing_counted
+from fogproof.checks.statistics.goodness import MISS, between, binomial_p, blocks, deviances, nothing_counted
 from fogproof.checks.statistics.tails import binomial_interval
 from fogproof.checks.verdict import EffectInterval, Finding, Resolution
 
@@ -140,14 +140,6 @@ def _claimed(plane: GridPlane, cells: int) -> tuple[np.ndarray, np.ndarray]:
         first, second = (share.reshape(cells, -1).sum(axis=1) for share in plane.shares)
         return first[:, None] * second, plane.blur(cells)
     return blocks(plane.mass, cells), blocks(plane.error, cells) + plane.blur(cells)
-
-
-def blocks(values: np.ndarray, size: int) -> np.ndarray:
-    """Return the sums of square blocks of (n, n) values, (size, size)."""
-    if len(values) == size:
-        return values
-    step = len(values) // size
-    return values.reshape(size, step, size, step).sum(axis=(1, 3))
 
 
 def _conspicuous(observed: np.ndarray, expected: np.ndarray, slack: np.ndarray) -> int:

@@ -100,11 +100,13 @@ def medium_of_channel(medium: AnyMedium, c: int) -> AnyMedium:
     if medium.channels is None:
         return medium
     own = getattr(medium, "channel", None)
+    grey: AnyMedium
     if own is not None:
-        grey: AnyMedium = own(c)
+        grey = own(c)
         return grey
     data: Any = medium
-    return replace(data, **{field.name: channel_of(getattr(data, field.name), c) for field in fields(data)})
+    grey = replace(data, **{field.name: channel_of(getattr(data, field.name), c) for field in fields(data)})
+    return grey
 
 
 def box(medium: AnyMedium) -> tuple[np.ndarray, np.ndarray]:

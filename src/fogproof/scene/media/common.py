@@ -92,4 +92,4 @@ def cells_of_channel(medium: Any, axes: int, c: int) -> Any:
 
 def cells_vary(medium: Any) -> bool:
     """Return whether albedo or emission differ from cell to cell."""
-    return medium.albedo.ndim + medium.emission.ndim > 0
+    return bool(medium.albedo.ndim + medium.emission.ndim > 0)

@@ -53,10 +53,12 @@ class Medium:
     def albedo(self) -> np.ndarray:
         """Single-scattering albedo sigma_s / sigma_t, () or (channels,); 0 where the medium is empty."""
         sigma_t = self.sigma_t
-        return np.divide(self.sigma_s, sigma_t, out=np.zeros_like(sigma_t), where=sigma_t > 0)
+        share: np.ndarray = np.divide(self.sigma_s, sigma_t, out=np.zeros_like(sigma_t), where=sigma_t > 0)
+        return share
 
     @property
     def mean_free_path(self) -> np.ndarray:
         """1 / sigma_t [m], () or (channels,); inf where the medium is empty."""
         sigma_t = self.sigma_t
-        return np.divide(1.0, sigma_t, out=np.full_like(sigma_t, np.inf), where=sigma_t > 0)
+        way: np.ndarray = np.divide(1.0, sigma_t, out=np.full_like(sigma_t, np.inf), where=sigma_t > 0)
+        return way

@@ -1,0 +1,102 @@
+"""Rounding in single precision is charged where it arises: narrow lobes are judged all the same, and right ones left alone."""
+
+import numpy as np
+import pytest
+
+from fogproof import UnitSphere, check_sampler
+
+TENTH = 2 * np.sin(np.radians(0.1) / 2) ** 2
+SINGLE = {"dimensions": 2, "precision": "float32", "samples": 300_000}
+
+
+def versine(x):
+    small = (x[:, 0] ** 2 + x[:, 1] ** 2) / (1 + np.abs(x[:, 2]))
+    return np.where(x[:, 2] < 0, 2 - small, small)
+
+
+def around(v, phi):
+    sine = np.sqrt(v * (2 - v))
+    return np.stack([sine * np.cos(phi), sine * np.sin(phi), 1 - v], axis=-1)
+
+
+def cone(power):
+    def sample(u):
+        kind = u.dtype.type
+        return around(u[:, 0] ** power * kind(TENTH), kind(2 * np.pi) * u[:, 1])
+
+    return sample
+
+
+def cone_pdf(x):
+    return np.where(versine(x) <= TENTH * (1 + 1e-6), 1 / (2 * np.pi * TENTH), 0)
+
+
+def lobe(g, turn, textbook):
+    def sample(u):
+        kind = u.dtype.type
+        g_, phi = kind(g), kind(2 * np.pi * turn) * u[:, 1]
+        if textbook:
+            s = (1 - g_ * g_) / (1 - g_ + 2 * g_ * u[:, 0])
+            mu = np.clip((1 + g_ * g_ - s * s) / (2 * g_), -1, 1)
+            sine = np.sqrt(1 - mu * mu)
+            return np.stack([sine * np.cos(phi), sine * np.sin(phi), mu], axis=-1)
+        back = 1 - u[:, 0]
+        return around(2 * (1 - g_) ** 2 * back * (1 + g_ * u[:, 0]) / (1 - g_ + 2 * g_ * u[:, 0]) ** 2, phi)
+
+    return sample
+
+
+def lobe_pdf(g):
+    return lambda x: (1 - g * g) / (4 * np.pi * ((1 - g) ** 2 + 2 * g * versine(x)) ** 1.5)
+
+
+def always_single(sample):
+    return lambda u: sample(u.astype(np.float32))
+
+
+def rounded_at_last(sample):
+    return lambda u: sample(u.astype(np.float64)).astype(np.float32)
+
+
+STYLES = {"as its uniforms": lambda f: f, "always single": always_single, "rounded at last": rounded_at_last}
+RIGHT = {
+    "cone of a tenth of a degree": (cone(1), cone_pdf),
+    "g = 0.99": (lobe(0.99, 1, False), lobe_pdf(0.99)),
+    "g = 0.99 by the textbook": (lobe(0.99, 1, True), lobe_pdf(0.99)),
+    "g = -0.99 by the textbook": (lobe(-0.99, 1, True), lobe_pdf(-0.99)),
+    "g = 0.999": (lobe(0.999, 1, False), lobe_pdf(0.999)),
+}
+WRONG = {
+    "cone with the square of a uniform": (cone(2), cone_pdf),
+    "1 % of the azimuth missing": (lobe(0.99, 0.99, False), lobe_pdf(0.99)),
+    "1 % of the azimuth missing, by the textbook": (lobe(0.99, 0.99, True), lobe_pdf(0.99)),
+}
+
+
+@pytest.mark.parametrize("style", STYLES)
+@pytest.mark.parametrize("name", RIGHT)
+def test_right_narrow_lobes_pass(name, style):
+    sample, pdf = RIGHT[name]
+    verdict = check_sampler(STYLES[style](sample), pdf, UnitSphere(), **SINGLE)
+    assert verdict.outcome == "not rejected", str(verdict)
+
+
+@pytest.mark.parametrize("style", STYLES)
+@pytest.mark.parametrize("name", WRONG)
+def test_wrong_narrow_lobes_are_found(name, style):
+    sample, pdf = WRONG[name]
+    verdict = check_sampler(STYLES[style](sample), pdf, UnitSphere(), **{**SINGLE, "samples": 1_000_000})
+    assert verdict.outcome == "rejected", str(verdict)
+    assert any(f.outcome == "rejected" and f.p_value is not None for f in verdict.findings)
+
+
+def test_what_rounding_hides_is_no_pass():
+    shift = np.float32(2e-8)
+
+    def coarse(u):
+        v = np.floor(u[:, 0] * np.float32(4)) * shift
+        return around(v.astype(np.float32), np.float32(2 * np.pi) * u[:, 1])
+
+    pdf = lambda x: np.where(versine(x) < 8e-8, 1 / (2 * np.pi * 8e-8), 0)  # noqa: E731
+    verdict = check_sampler(always_single(coarse), pdf, UnitSphere(), **SINGLE)
+    assert verdict.outcome != "not rejected", str(verdict)
