@@ -279,7 +279,7 @@ def _by_labels(
     """Return what is to be judged by labels, because no quadrature knows the density."""
     wanted = int(np.clip(samples // 8, PILOT, _LARGE_PILOT))
     points = pilot.points
-    if wanted > PILOT:
+    if wanted > PILOT and subject.pilot is None:
         points = np.concatenate([points, _pilot(subject, seed, 1, wanted - PILOT).points])
     law = subject.domain.law(points)
     mixture = MixtureTest.of(subject, law, points, seed, samples).wider(points)
@@ -325,7 +325,7 @@ def _counter(
 
 
 def _pilot(subject: Subject, seed: int, index: int = 0, n: int = PILOT) -> Pilot:
-    draw = subject.draw(batch_generator(seed, "samples", 0, index), n)
+    draw = subject.draw(batch_generator(seed, "samples", 0, index), subject.pilot or n)
     good = inside(subject, draw)
     for at in subject.at_atom(draw.x).values():
         good = good & ~at

@@ -18,7 +18,10 @@ UNIT_ROUNDOFF: dict[Precision, float] = {"float64": 2.0**-53, "float32": 2.0**-2
 
 @dataclass(frozen=True)
 class Subject:
-    """A sampler and all it declares; the fields are the arguments of `check_sampler`."""
+    """A sampler and all it declares; the fields are the arguments of `check_sampler`, but for the last.
+
+    pilot  how many samples there are for the first look, None if as many as anybody wants
+    """
 
     sample: Callable[..., Any]
     pdf: Callable[[np.ndarray], Any]
@@ -38,6 +41,7 @@ class Subject:
     breaks: Mapping[str, Any] = field(default_factory=dict)
     support: Domain | None = None
     inverse: Callable[[np.ndarray], Any] | None = None
+    pilot: int | None = None
 
     @property
     def bits(self) -> int:
@@ -125,7 +129,7 @@ def _reshaping(got: tuple[int, ...], wanted: tuple[int, ...]) -> str:
         return "; transpose it: one point a row"
     if got == (*wanted, 1):
         return "; drop the last axis: x[:, 0]"
-    if got == () and len(wanted) == 1:
+    if got in ((), (1,)) and len(wanted) == 1:
         return "; a constant needs one value a point: np.full(len(x), value)"
     return ""
 

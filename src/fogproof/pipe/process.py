@@ -158,6 +158,7 @@ class Process:
 
         `note` says afterwards what it did that was not asked of it.
         """
+        before = self._popen.poll()
         with contextlib.suppress(OSError):
             self._close(self._in)
         deadline = time.monotonic() + self.timeouts.end
@@ -172,6 +173,8 @@ class Process:
         finally:
             code = self._popen.poll()
             self._kill()
+        while self._out in self._open and (rest := self._read(_CHUNK)):
+            extra += len(rest)
         self._listen()
         for pipe in list(self._open):
             self._close(pipe)
@@ -179,7 +182,7 @@ class Process:
             self.note = f"it wrote {extra} bytes more than it was asked for"
         elif code is None:
             self.note = f"it did not end within {self.timeouts.end:g} s of the end of its input, and was killed"
-        elif code:
+        elif code and before is None:
             self.note = f"it {_end_of(code)} after the end of its input"
 
     def _kill(self) -> None:

@@ -76,8 +76,9 @@ def _setting(subject: Subject, n: int, seed: int) -> Setting | None:
 
 def _explained(subject: Subject, samples: int, seed: int) -> Explained | None:
     setting: Setting | None = None
+    least = 1 << 12 if subject.pilot is None else 0  # of samples that are there already, no more can be drawn
     for n in _SIZES:
-        setting = _setting(subject, min(n, max(samples, 1 << 12)), seed)
+        setting = _setting(subject, min(n, max(samples, least)), seed)
         if setting is None:
             return None
         base = setting.contrast.fit(setting.p(setting.contrast.points))
