@@ -63,7 +63,7 @@ study: $(VENV)/.installed  ## the lecture's estimators, speed against error; res
 kill-study: $(VENV)/.installed  ## kill a study at 20 random moments; nothing may be lost, and no bit may differ
 	$(BIN)/python tools/kill_study.py
 
-torture: $(VENV)/.installed-test  ## nothing lost, nothing silent: kills, full disks, flipped bits, broken lines, files and commands; an hour
+torture: $(VENV)/.installed-test  ## nothing lost, nothing silent: kills, full disks, flipped bits, broken lines, files and commands; long
 	$(BIN)/python tools/torture_store.py
 	$(BIN)/python tools/kill_study.py
 	$(BIN)/python tools/fuzz_oracle.py

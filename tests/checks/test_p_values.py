@@ -34,7 +34,7 @@ from fogproof.checks.statistics.goodness import (
 from fogproof.checks.statistics.heavy import TailEstimate
 from fogproof.checks.statistics.known import Known
 from fogproof.checks.statistics.light import light_tailed_p
-from fogproof.checks.statistics.means import mean_test
+from fogproof.checks.statistics.means import mean_test, trusted
 from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.statistics.scan import _extreme_p, scan, scan_ends, scan_plane
 from fogproof.checks.statistics.serial import Successions, in_units, serial_test
@@ -283,6 +283,19 @@ def test_few_pairs_have_the_hypergeometric_law():
     held(p)
 
 
+def test_many_pairs_of_few_large_values_have_the_binomial_tail():
+    rng = np.random.default_rng()
+    large = rng.random(3000) < 0.1
+    large[1:] |= large[:-1] & (rng.random(2999) < 0.15)
+    seen = record(np.where(large, 1.0, rng.random(3000) * 0.5), 3000)
+    share, pairs, both = int(seen.large[0]) / 3000, int(seen.pairs[0]), int(seen.both[0, 0])
+    p, correlation, z = concordance(seen, 0, 0)
+    assert z == near(correlation * math.sqrt(pairs), rel=1e-9)
+    binomial = stats.binom(round(pairs * share), share)
+    exact = 2 * min(binomial.sf(both - 1), binomial.cdf(both))
+    assert p == near(max(2 * stats.norm.sf(abs(z)), min(1.0, exact)), rel=1e-6)
+
+
 def test_scatter_of_calls_is_seen_both_ways():
     rng = np.random.default_rng()
     strata = np.concatenate([rng.permutation((np.arange(100) + rng.random(100)) / 100) for _ in range(40)])
@@ -428,3 +441,37 @@ def test_a_mean_of_skewed_numbers_has_students_law_and_halls_correction():
         found = mean_test("", "", Moments.of(x), x.mean() + off * x.std(ddof=1) / math.sqrt(3000), 0.0, 1e-6)
         factor = math.exp(stats.skew(x) / (3 * math.sqrt(3000)) * off**3)
         assert found.p_value == near(min(1.0, right.pvalue * factor), rel=1e-2)
+
+
+def test_few_skewed_or_short_samples_are_not_trusted():
+    """Each for one reason, beside what is trusted."""
+    rng = np.random.default_rng()
+    half = rng.normal(size=2000)
+    even = np.concatenate([half, -half])
+    skewed = Moments.of(rng.gamma(0.25, 4.0, 20_000))
+    flat = rng.random(60)
+    for right, wrong in (
+        (trusted(Moments.of(even), 1e-6), trusted(Moments.of(np.append(even, [60.0, -60.0])), 1e-6)),
+        (trusted(skewed, 1e-2), trusted(skewed, 1e-12)),
+        (
+            trusted(Moments.of(np.concatenate([flat, -flat])), 0.1),
+            trusted(Moments.of(np.concatenate([flat[:45], -flat[:45]])), 0.1),
+        ),
+        (
+            trusted(Moments.of(even), 0.01, Known(variance=1.0)),
+            trusted(Moments.of(even), 0.01, Known(variance=2.0)),
+        ),
+        (*(trusted(Moments.of((np.arange(150) < hits).astype(float)), 0.1) for hits in (2, 1)),),
+    ):
+        assert (right, wrong) == (True, False)
+
+
+def test_a_mean_of_few_even_numbers_has_students_law_and_interval():
+    half = np.random.default_rng().random(80)
+    x = np.concatenate([half, -half])
+    error = x.std(ddof=1) / math.sqrt(160)
+    found = mean_test("", "", Moments.of(x), 4.5 * error, 0.0, 1e-6)
+    assert found.p_value == near(2 * stats.t.sf(4.5, 159), rel=1e-4)
+    assert found.interval.high - found.interval.low == near(
+        2 * stats.norm.isf((1 - found.interval.confidence) / 2) * error, rel=1e-6
+    )
