@@ -8,7 +8,7 @@ BIN    := $(VENV)/bin
 export OPENBLAS_NUM_THREADS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help verify gallery study test lint format calibrate field-bugs images repeat families oracle-docs docs sdist fuzz-oracle oracle-hard kill-study torture try-wheel golden bench mutants mutants-sample clean
+.PHONY: help verify gallery study test lint format calibrate field-bugs repeat families oracle-docs docs sdist fuzz-oracle oracle-hard kill-study torture findings languages try-wheel golden bench mutants mutants-sample clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -41,6 +41,7 @@ field-bugs: $(VENV)/.installed-test  ## bugs that shipped elsewhere, planted: re
 repeat: $(VENV)/.installed-test  ## 20 runs of the catalogue with fresh seeds: no false alarm
 	$(BIN)/python tools/repeat_verify.py
 
+.PHONY: images
 images: $(VENV)/.installed-test  ## comparisons of images: false alarms, planted errors, size, broken files; an hour
 	$(BIN)/python tools/image_promises.py planted
 	$(BIN)/python tools/image_promises.py fuzz 2000
@@ -69,13 +70,19 @@ study: $(VENV)/.installed  ## the lecture's estimators, speed against error; res
 kill-study: $(VENV)/.installed  ## kill a study at 20 random moments; nothing may be lost, and no bit may differ
 	$(BIN)/python tools/kill_study.py
 
-torture: $(VENV)/.installed-test  ## nothing lost, nothing silent: kills, full disks, flipped bits, broken lines, files and commands; an hour
+torture: $(VENV)/.installed-test  ## nothing lost, nothing silent: kills, full disks, flipped bits, broken lines, files and commands; long
 	$(BIN)/python tools/torture_store.py
 	$(BIN)/python tools/kill_study.py
 	$(BIN)/python tools/fuzz_oracle.py
 	$(BIN)/python tools/fuzz_oracle.py --lines 100000 --mostly-right
 	$(BIN)/python tools/fuzz_files.py
 	$(BIN)/python tools/fuzz_commands.py
+
+findings: $(VENV)/.installed-test  ## what the checks found in Mitsuba, measured again without them; rewrites docs/findings.md
+	$(BIN)/python tools/findings.py
+
+languages: $(VENV)/.installed-test  ## the examples in C++, Rust, Go and JavaScript, right and broken, under 100 seeds
+	$(BIN)/python tools/languages.py
 
 try-wheel: $(VENV)/bin/python  ## the built wheel in a fresh environment: right samplers pass, wrong ones fail, in every way to run tests
 	$(BIN)/python tools/try_wheel.py

@@ -99,7 +99,7 @@ def kept(path: Path | None, seed: int) -> dict[tuple[str, int], list[Case | str]
             continue  # the last line of a run that was killed
         if part["seed"] == seed:
             read = [
-                x if isinstance(x, str) else Case(x[0], x[1], mp.mpf(x[2]), mp.mpf(x[3]), x[4], x[5])
+                x if isinstance(x, str) else Case(x[0], x[1], mp.mpf(x[0]) + mp.mpf(x[2]), mp.mpf(x[3]), x[4], x[5])
                 for x in part["cases"]
             ]
             done[part["name"], part["index"]] = read
@@ -107,8 +107,11 @@ def kept(path: Path | None, seed: int) -> dict[tuple[str, int], list[Case | str]
 
 
 def line_of(name: str, seed: int, index: int, cases: list[Case | str]) -> str:
-    """Return a batch as a line of the file of parts; 60 digits of the truth."""
-    plain = [x if isinstance(x, str) else [*x[:2], mp.nstr(x.truth, 60), mp.nstr(x.doubt, 60), *x[4:]] for x in cases]
+    """Return a batch as a line of the file of parts; of the truth by how much it is more, in 30 digits."""
+    plain = [
+        x if isinstance(x, str) else [*x[:2], mp.nstr(x.truth - mp.mpf(x.value), 30), mp.nstr(x.doubt, 30), *x[4:]]
+        for x in cases
+    ]
     return json.dumps({"name": name, "seed": seed, "index": index, "cases": plain}) + "\n"
 
 

@@ -46,6 +46,9 @@ THICK, UNSEEN = 8.0, 1e-30
 BLOCK = 4096
 """Panels evaluated at a time."""
 
+SPARE = 16.0
+"""Times as small as its share is what a jump would cost in a panel without one: halving a smooth one is cheap."""
+
 CUTS = np.concatenate([[0.0], NODES, [1.0]])
 """Where a panel may be cut beside a jump, as shares of its width."""
 
@@ -230,7 +233,8 @@ def _panels(
     if reach is not None:
         edges = ends.copy()
         with np.errstate(under="ignore", over="ignore"):
-            edges[..., 1, 1] *= np.exp(-tau)
+            before = inside.reshape(scale.shape) * ends[..., 0, :]  # optical depth between an edge and its place inside
+            edges[..., 1, :] *= np.exp(-np.stack([before[..., 0], tau - before[..., 1]], axis=-1))
             hidden = scale * of_a_jump(np.stack([sigma, dimmed], axis=-2), edges)
         # The cuts of the one that changes at the same place everywhere, as a jump does.
         kinds = int(np.prod(jumps.shape[1:]))
@@ -265,6 +269,9 @@ def _too_wrong(panels: DepthPanels, count: int, tolerance: float) -> np.ndarray:
         share = tolerance / number[rays].reshape(-1, *[1] * (panels.tau.ndim - 1))
         bad = panels.tau_error > np.maximum(share * totals[0][rays], 8 * EPS * panels.tau)
         bad |= seen * panels.gain_error > np.maximum(share * totals[1][rays], 8 * EPS * seen * panels.gain)
+        share = share / SPARE
+        bad |= panels.hidden[..., 0] > np.maximum(share * totals[0][rays], 64 * EPS * panels.tau)
+        bad |= seen * panels.hidden[..., 1] > np.maximum(share * totals[1][rays], 64 * EPS * seen * panels.gain)
         # Nodes that see nothing through a thick panel would find no gain in it, and their halves none either.
         glows = (panels.jumps[..., 1] > 0) | (panels.ends[..., 1, 0] > 0)
         bad |= glows & (panels.tau > THICK) & (seen > UNSEEN)

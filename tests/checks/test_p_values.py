@@ -1,6 +1,7 @@
 """p-values of each component: those of SciPy or of enumeration where there are any, else never too small, nor useless."""
 
 import math
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -9,7 +10,7 @@ from scipy import stats
 
 from fogproof.checks.call_sizes import one_law
 from fogproof.checks.convergence import _scatter
-from fogproof.checks.density.grid import GridPlane, Marginal, unit_square_grid
+from fogproof.checks.density.grid import Marginal, unit_cube_grid
 from fogproof.checks.density.lookup import Lookup
 from fogproof.checks.generators import _correlation, _kolmogorov, _pairs
 from fogproof.checks.statistics.coverage import SLACK, Coverage, coverage_test
@@ -22,11 +23,18 @@ from fogproof.checks.statistics.dependence import (
     spread_of_calls,
 )
 from fogproof.checks.statistics.extremes import extremes_p
-from fogproof.checks.statistics.goodness import binomial_p, chi_square, chi_square_sparse, kolmogorov, pooled
+from fogproof.checks.statistics.goodness import (
+    binomial_p,
+    chi_square,
+    chi_square_sparse,
+    deviances,
+    kolmogorov,
+    pooled,
+)
 from fogproof.checks.statistics.heavy import TailEstimate
 from fogproof.checks.statistics.known import Known
 from fogproof.checks.statistics.light import light_tailed_p
-from fogproof.checks.statistics.means import mean_test
+from fogproof.checks.statistics.means import mean_test, trusted
 from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.statistics.scan import _extreme_p, scan, scan_ends, scan_plane
 from fogproof.checks.statistics.serial import Successions, in_units, serial_test
@@ -37,6 +45,11 @@ from fogproof.checks.subject import Subject
 from fogproof.domains import Interval, Product
 
 LEVELS = (0.3, 0.1, 0.02)
+
+
+def near(value, rel):
+    """Of small p-values too: `pytest.approx` alone takes all that are below 1e-12 for equal."""
+    return pytest.approx(value, rel=rel, abs=1e-305)
 
 
 def line(cells, error=0.0, blur=0.0):
@@ -63,10 +76,10 @@ def test_binomial_by_enumeration(n, p):
     law = stats.binom.pmf(hits, n, p)
     found = np.array([binomial_p(int(k), n, p, p) for k in hits])
     lower, upper = np.cumsum(law), np.cumsum(law[::-1])[::-1]
-    assert found == pytest.approx(np.minimum(1, 2 * np.minimum(lower, upper)), rel=1e-9)
+    assert found == near(np.minimum(1, 2 * np.minimum(lower, upper)), rel=1e-9)
     low, high = p / 2, min(1.5 * p, 1.0)
     kind = [max(binomial_p(int(k), n, q, q) for q in np.linspace(low, high, 41)) for k in hits]
-    assert [binomial_p(int(k), n, low, high) for k in hits] == pytest.approx(kind, rel=1e-9)
+    assert [binomial_p(int(k), n, low, high) for k in hits] == near(kind, rel=1e-9)
 
 
 def test_far_tails_of_few_trials_by_fractions():
@@ -74,7 +87,7 @@ def test_far_tails_of_few_trials_by_fractions():
     for count, n in ((19, 20), (18, 20), (17, 40)):
         exact = sum(math.comb(n, k) * p**k * (1 - p) ** (n - k) for k in range(count, n + 1))
         assert exact < 1e-200
-        assert binomial_at_least(count, n, 1e-14) == pytest.approx(float(exact), rel=1e-10)
+        assert binomial_at_least(count, n, 1e-14) == near(float(exact), rel=1e-10)
 
 
 def test_kolmogorov_is_scipys_but_for_what_lies_between_edges():
@@ -115,7 +128,14 @@ def test_chi_square_is_the_likelihood_ratio_with_williams_correction():
     found = chi_square("", counts, mass, np.zeros(30), np.zeros(30), 1e-6)
     statistic = stats.power_divergence(counts, expected, lambda_="log-likelihood").statistic
     statistic /= 1 + (np.sum(1 / expected) - 1 / 20_000) / (6 * 29)
-    assert found.p_value == pytest.approx(stats.chi2.sf(statistic, 29), rel=1e-9)
+    assert found.p_value == near(stats.chi2.sf(statistic, 29), rel=1e-9)
+
+
+def test_deviances_are_poissons():
+    """Twice the log of the likelihood over its largest value."""
+    observed, expected = np.array([0, 1, 3, 3, 40, 41]), np.array([0.2, 1.0, 3.0, 0.01, 31.0, 50.5])
+    best, claimed = (stats.poisson.logpmf(observed, mean) for mean in (np.maximum(observed, 1e-300), expected))
+    assert deviances(observed, expected) == pytest.approx(2 * (best - claimed), rel=1e-9, abs=1e-12)
 
 
 def test_cells_are_pooled_until_each_expects_enough():
@@ -140,7 +160,7 @@ def test_levels_of_chi_square_smooth_and_sparse():
     marginal = line(64)
     z = [smooth("", marginal, c, 1e-6) for c in uniform_counts(64, 3000, 600)]
     held([f.p_value for f in z], 0.6)
-    assert z[0].p_value == pytest.approx(stats.chi2.sf(z[0].statistic, 4), rel=1e-9) or z[0].p_value < 1e-4
+    assert z[0].p_value == near(stats.chi2.sf(z[0].statistic, 4), rel=1e-9) or z[0].p_value < 1e-4
     mass, none = np.full(300, 1 / 300), np.zeros(300)
     p = np.array([chi_square_sparse("", c, mass, none, 1e-6).p_value for c in uniform_counts(300, 300, 1500)])
     held(p, 0.6)
@@ -161,12 +181,12 @@ def test_the_extreme_sample_has_a_beta_law():
     n = 500
     for share in (1e-6, 1e-4, 2e-3, 0.02):
         law = stats.beta(1, n)
-        assert _extreme_p(share, 0.0, n) == pytest.approx(min(1, 2 * min(law.cdf(share), law.sf(share))), rel=1e-9)
+        assert _extreme_p(share, 0.0, n) == near(min(1, 2 * min(law.cdf(share), law.sf(share))), rel=1e-9)
         assert _extreme_p(share, 2 * share, n) >= _extreme_p(share, 0.0, n)
 
 
 def test_levels_of_what_is_counted_on_a_plane():
-    plane = unit_square_grid(("x", "y"), 4096).plane
+    plane = unit_cube_grid(("x", "y"), 4096, 2.0**-52).plane
     size = plane.size
     counts = uniform_counts(size * size, 4096, 300).reshape(-1, size, size)
     coarse = [c.reshape(32, size // 32, 32, size // 32).sum(axis=(1, 3)) for c in counts]
@@ -176,15 +196,15 @@ def test_levels_of_what_is_counted_on_a_plane():
     one[3, 5] += 40
     where = len(plane.mass) ** 2 * math.log2(len(plane.mass) / 2)
     expected = where * stats.binom.sf(one[3, 5] - 1, one.sum(), 1 / size**2) * 2
-    assert scan_plane("", ("x", "y"), plane, one, 1e-6).p_value == pytest.approx(min(1.0, expected), rel=1e-6)
+    assert scan_plane("", ("x", "y"), plane, one, 1e-6).p_value == near(min(1.0, expected), rel=1e-6)
 
 
 def test_a_plane_of_dependent_axes_is_told_its_masses():
     """Given the masses of a correlated density, samples of it pass, and those of independent axes do not."""
-    grid = unit_square_grid(("x", "y"), 100_000).plane
+    grid = unit_cube_grid(("x", "y"), 100_000, 2.0**-52).plane
     u = (np.arange(32) + 0.5) / 32
     mass = (1 + 0.5 * (2 * u[:, None] - 1) * (2 * u - 1)) / 1024
-    plane = GridPlane(grid.rows, grid.shares, grid.blurs, mass, grid.error, False)
+    plane = replace(grid, mass=mass, independent=False)
     rng = np.random.default_rng()
     right, wrong = (rng.multinomial(100_000, m.ravel() / m.sum()).reshape(32, 32) for m in (mass, np.full((32, 32), 1)))
     assert cross("", ("x", "y"), plane, right, 1e-6).p_value > 1e-9
@@ -207,7 +227,7 @@ def test_serial_correlation_has_freedmans_bound_and_counts_its_rivals():
     x -= x.mean()
     bound = (0.5 + abs((scores / 2.0**15).mean())) ** 2
     expected = 2 * freedman(x[:-1] * x[1:], bound, np.mean(x * x) ** 2)
-    assert found.p_value == pytest.approx(min(1.0, expected), rel=5e-2)
+    assert found.p_value == near(min(1.0, expected), rel=5e-2)
     u = rng.random(64 * 400)
     u[17:] = np.where(rng.random(len(u) - 17) < 0.06, u[:-17], u[17:])
     far = serial_test("", Successions.of([in_units(u)], True), 1e-6)
@@ -215,7 +235,7 @@ def test_serial_correlation_has_freedmans_bound_and_counts_its_rivals():
     x = np.floor((u - 0.5) * 64) / 64
     x, mean = x - x.mean(), x.mean()
     expected = 2 * 64 * freedman(x[:-17] * x[17:], (0.5 + abs(mean)) ** 2, np.mean(x * x) ** 2)
-    assert math.log(far.p_value) == pytest.approx(math.log(expected), rel=0.02)
+    assert math.log(far.p_value) == near(math.log(expected), rel=0.02)
 
 
 def test_halves_of_a_call_are_compared():
@@ -263,6 +283,19 @@ def test_few_pairs_have_the_hypergeometric_law():
     held(p)
 
 
+def test_many_pairs_of_few_large_values_have_the_binomial_tail():
+    rng = np.random.default_rng()
+    large = rng.random(3000) < 0.1
+    large[1:] |= large[:-1] & (rng.random(2999) < 0.15)
+    seen = record(np.where(large, 1.0, rng.random(3000) * 0.5), 3000)
+    share, pairs, both = int(seen.large[0]) / 3000, int(seen.pairs[0]), int(seen.both[0, 0])
+    p, correlation, z = concordance(seen, 0, 0)
+    assert z == near(correlation * math.sqrt(pairs), rel=1e-9)
+    binomial = stats.binom(round(pairs * share), share)
+    exact = 2 * min(binomial.sf(both - 1), binomial.cdf(both))
+    assert p == near(max(2 * stats.norm.sf(abs(z)), min(1.0, exact)), rel=1e-6)
+
+
 def test_scatter_of_calls_is_seen_both_ways():
     rng = np.random.default_rng()
     strata = np.concatenate([rng.permutation((np.arange(100) + rng.random(100)) / 100) for _ in range(40)])
@@ -295,7 +328,7 @@ def test_welch_is_scipys():
             stats.skew(b) * (b.std(ddof=1) / error) ** 3 / 500**2
         )
         factor = math.exp(abs(third) / 3 * abs(right.statistic) ** 3)
-        assert found.p_value == pytest.approx(min(1.0, right.pvalue * factor), rel=2e-3)
+        assert found.p_value == near(min(1.0, right.pvalue * factor), rel=2e-3)
 
 
 def test_hits_of_unequal_numbers_are_not_compared_as_equal_ones():
@@ -305,22 +338,22 @@ def test_hits_of_unequal_numbers_are_not_compared_as_equal_ones():
 
 def test_coverage_is_held_to_the_exact_binomial_tail():
     normal = Moments.of(np.random.default_rng().normal(size=5000))
-    squares = Moments.of(np.full(4, 1.0))
+    squares, off = Moments.of(np.full(4, 1.0)), Moments.of(np.zeros(4))
     nominal = stats.norm.cdf(2) - stats.norm.cdf(-2)
     room = SLACK + 0.25 * normal.skewness**2
     for held_by in (4600, 4400, 4300):
-        found = coverage_test("", Coverage(5000, held_by, (squares,)), [normal], 1e-6)
-        assert found.p_value == pytest.approx(stats.binom.cdf(held_by, 5000, nominal - room), rel=1e-6)
+        found = coverage_test("", Coverage(5000, held_by, (squares,)), [normal], [off], 1e-6)
+        assert found.p_value == near(stats.binom.cdf(held_by, 5000, nominal - room), rel=1e-6)
         assert (found.outcome == "rejected") == (found.p_value <= 1e-6)
     few = Moments.of(np.random.default_rng().chisquare(4, 100_000) / 4)
-    found = coverage_test("", Coverage(5000, 4400, (few,)), [normal], 1e-6)
+    found = coverage_test("", Coverage(5000, 4400, (few,)), [normal], [off], 1e-6)
     nominal = 1 - 2 * stats.t.sf(2, 4)
-    assert found.p_value == pytest.approx(stats.binom.cdf(4400, 5000, nominal - room), rel=0.5)
-    two = coverage_test("", Coverage(5000, 4100, (squares, squares)), [normal, normal], 1e-6)
+    assert found.p_value == near(stats.binom.cdf(4400, 5000, nominal - room), rel=0.5)
+    two = coverage_test("", Coverage(5000, 4100, (squares, squares)), [normal, normal], [off, off], 1e-6)
     nominal = 1 - 2 * 2 * stats.norm.sf(2)
-    assert two.p_value == pytest.approx(stats.binom.cdf(4100, 5000, nominal - 2 * room), rel=1e-6)
+    assert two.p_value == near(stats.binom.cdf(4100, 5000, nominal - 2 * room), rel=1e-6)
     skewed = Moments.of(np.random.default_rng().exponential(size=100_000))
-    assert coverage_test("", Coverage(5000, 3400, (squares,)), [skewed], 1e-6).outcome == "not rejected"
+    assert coverage_test("", Coverage(5000, 3400, (squares,)), [skewed], [off], 1e-6).outcome == "not rejected"
 
 
 def test_the_tail_index_is_a_power_laws_with_its_error():
@@ -351,20 +384,20 @@ def test_bounds_and_variance_give_the_closed_forms():
     both = Known(low=0.0, high=1.0, variance=0.04)
     gap = 0.9 - 0.5
     by_variance, by_bounds = (0.04 / (0.04 + gap**2)) ** 30, (0.5 / 0.9) ** 30
-    assert extremes_p(bright, 0.5, 0.5, Known(variance=0.04)) == pytest.approx(2 * by_variance, rel=1e-9)
-    assert extremes_p(bright, 0.5, 0.5, both) == pytest.approx(4 * min(by_variance, by_bounds), rel=1e-9)
+    assert extremes_p(bright, 0.5, 0.5, Known(variance=0.04)) == near(2 * by_variance, rel=1e-9)
+    assert extremes_p(bright, 0.5, 0.5, both) == near(4 * min(by_variance, by_bounds), rel=1e-9)
     some = Moments.of((np.arange(40) % 10 < 9).astype(float))
     kl = 0.9 * math.log(0.9 / 0.5) + 0.1 * math.log(0.1 / 0.5)
-    assert extremes_p(some, 0.5, 0.5, Known(low=0.0, high=1.0)) == pytest.approx(4 * math.exp(-40 * kl), rel=1e-9)
+    assert extremes_p(some, 0.5, 0.5, Known(low=0.0, high=1.0)) == near(4 * math.exp(-40 * kl), rel=1e-9)
 
 
 def test_levels_of_streams_are_scipys():
     rng = np.random.default_rng()
     x, y = rng.random(2000), rng.random(2000)
     found = _kolmogorov("", x, 1e-6)
-    assert found.statistic == pytest.approx(stats.kstest(x, "uniform").statistic, rel=1e-9)
+    assert found.statistic == near(stats.kstest(x, "uniform").statistic, rel=1e-9)
     z = 12 * np.mean((x - 0.5) * (y - 0.5)) * math.sqrt(2000)
-    assert _correlation("", x, y, 1e-6).p_value == pytest.approx(2 * stats.norm.sf(abs(z)), rel=1e-9)
+    assert _correlation("", x, y, 1e-6).p_value == near(2 * stats.norm.sf(abs(z)), rel=1e-9)
     held([_correlation("", *rng.random((2, 500)), 1e-6).p_value for _ in range(400)], 0.6)
     held([_pairs("", *rng.random((2, 4000)), 1e-6).p_value for _ in range(300)], 0.6)
 
@@ -377,12 +410,12 @@ def test_rivals_of_small_calls_are_counted():
         one_law("", subject, {1000: odd, **{k: rng.random(50) for k in others}}, pilot, 1, 1e-6).p_value
         for others in ((), (1, 10))
     )
-    assert three == pytest.approx(3 * one, rel=1e-9)
+    assert three == near(3 * one, rel=1e-9)
     cube = Product(Interval(0.0, 1.0), Interval(0.0, 1.0))
     flat = Subject(lambda rng, n: rng.random((n, 2)), lambda x: np.ones(len(x)), cube, None)
     points = np.stack([odd, rng.random(4000)], axis=-1)
     two = one_law("", flat, {1000: points}, np.stack([pilot, rng.random(20_000)], axis=-1), 1, 1e-6).p_value
-    assert two == pytest.approx(2 * one, rel=1e-9)
+    assert two == near(2 * one, rel=1e-9)
 
 
 def test_scatter_of_replicates_falls_as_slowly_as_is_allowed_and_no_slower():
@@ -400,9 +433,45 @@ def test_scatter_of_replicates_falls_as_slowly_as_is_allowed_and_no_slower():
     assert _scatter(still, sizes, 1e-6)[0].outcome == "inconclusive"
 
 
-def test_a_mean_of_skewed_numbers_is_rejected_as_rarely_as_said():
-    """At 1e-3, where Student's law alone would be wrong by a factor of two."""
+def test_a_mean_of_skewed_numbers_has_students_law_and_halls_correction():
     rng = np.random.default_rng()
-    p = [mean_test("", "", Moments.of(x), 1.0, 0.0, 1e-3).p_value for x in rng.gamma(0.25, 4.0, (3000, 1500))]
-    small = sum(1 for one in p if one is not None and one <= 1e-3)
-    assert stats.binom.sf(small - 1, 3000, 1e-3) > 1e-9
+    for off in (0.0, 1.5, 3.0, 4.5):
+        x = rng.gamma(4.0, size=3000)
+        right = stats.ttest_1samp(x, x.mean() + off * x.std(ddof=1) / math.sqrt(3000))
+        found = mean_test("", "", Moments.of(x), x.mean() + off * x.std(ddof=1) / math.sqrt(3000), 0.0, 1e-6)
+        factor = math.exp(stats.skew(x) / (3 * math.sqrt(3000)) * off**3)
+        assert found.p_value == near(min(1.0, right.pvalue * factor), rel=1e-2)
+
+
+def test_few_skewed_or_short_samples_are_not_trusted():
+    """Each for one reason, beside what is trusted."""
+    rng = np.random.default_rng()
+    half = rng.normal(size=2000)
+    even = np.concatenate([half, -half])
+    skewed = Moments.of(rng.gamma(0.25, 4.0, 20_000))
+    flat = rng.random(60)
+    for right, wrong in (
+        (trusted(Moments.of(even), 1e-6), trusted(Moments.of(np.append(even, [60.0, -60.0])), 1e-6)),
+        (trusted(skewed, 1e-2), trusted(skewed, 1e-12)),
+        (
+            trusted(Moments.of(np.concatenate([flat, -flat])), 0.1),
+            trusted(Moments.of(np.concatenate([flat[:45], -flat[:45]])), 0.1),
+        ),
+        (
+            trusted(Moments.of(even), 0.01, Known(variance=1.0)),
+            trusted(Moments.of(even), 0.01, Known(variance=2.0)),
+        ),
+        (*(trusted(Moments.of((np.arange(150) < hits).astype(float)), 0.1) for hits in (2, 1)),),
+    ):
+        assert (right, wrong) == (True, False)
+
+
+def test_a_mean_of_few_even_numbers_has_students_law_and_interval():
+    half = np.random.default_rng().random(80)
+    x = np.concatenate([half, -half])
+    error = x.std(ddof=1) / math.sqrt(160)
+    found = mean_test("", "", Moments.of(x), 4.5 * error, 0.0, 1e-6)
+    assert found.p_value == near(2 * stats.t.sf(4.5, 159), rel=1e-4)
+    assert found.interval.high - found.interval.low == near(
+        2 * stats.norm.isf((1 - found.interval.confidence) / 2) * error, rel=1e-6
+    )

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.special import ndtri
 
-from fogproof import Discrete, Draw, HalfLine, Interval, UnitSphere, UnitSquare, check_sampler
+from fogproof import Box, Discrete, Draw, HalfLine, Interval, UnitSphere, UnitSquare, check_sampler
 from fogproof.checks.call_sizes import CALLS, one_law
 from fogproof.checks.subject import Subject
 
@@ -261,3 +261,26 @@ def test_the_p_value_of_small_calls_is_an_upper_bound():
         calls = {size: np.random.default_rng().random(count * size) for size, count in CALLS.items()}
         p.append(one_law("size", subject, calls, pilot, seed, 1e-6).p_value)
     assert np.mean(np.array(p) <= 0.05) <= 0.05 + 6 * np.sqrt(0.05 * 0.95 / 400)
+
+
+def test_an_interval_may_lie_far_from_0():
+    far = Interval(1e9, 1e9 + 1)
+    verdict = check_sampler(lambda u: 1e9 + u[:, 0], lambda x: np.ones(len(x)), far, dimensions=1, samples=50_000)
+    assert verdict.outcome == "not rejected", str(verdict)
+    stateful = own_generator(np.random.default_rng())
+    verdict = check_sampler(lambda u: 1e9 + stateful(u), lambda x: np.ones(len(x)), far, dimensions=1, samples=50_000)
+    assert verdict.cause == "hidden state"
+
+
+@pytest.mark.parametrize("corner", [0.0, 1e12, -1e12])
+def test_a_box_may_lie_far_from_0(corner):
+    box = Box((corner,) * 3, (corner + 1,) * 3)
+    verdict = check_sampler(lambda u: corner + u, lambda x: np.ones(len(x)), box, dimensions=3, samples=50_000)
+    assert verdict.outcome == "not rejected", str(verdict)
+
+
+def test_a_pdf_with_a_state_of_its_own_is_found():
+    rng = np.random.default_rng()
+    noisy = lambda x: 1 + 0.1 * rng.normal(size=len(x))  # noqa: E731
+    verdict = check_sampler(lambda u: u[:, 0], noisy, Interval(0, 1), dimensions=1, samples=20_000)
+    assert "function of its point" in [f.check for f in verdict.findings if f.outcome == "rejected"]

@@ -272,8 +272,16 @@ def test_of_estimators(name):
 def test_of_calls_that_scatter_too_little():
     """Each call is stratified: means, neighbours and values are right, calls are too alike."""
     verdict = check_estimator(stratified, 0.5, samples=20 * 65_536, alpha=1e-9)
-    assert "scatter of calls" in rejecting(verdict), str(verdict)
-    assert rejecting(verdict) <= {"scatter of calls", "variance"}
+    assert rejecting(verdict) >= {"scatter of calls", "evenness of calls"}, str(verdict)
+    assert rejecting(verdict) <= {"scatter of calls", "evenness of calls", "variance"}
+
+
+def test_of_calls_whose_values_are_too_even():
+    """Stratified in their size and not in their sign: the mean of a call scatters as it should."""
+    verdict = check_estimator(
+        lambda rng, n: rng.choice([-1.0, 1.0], n) * stratified(rng, n), 0.0, samples=20 * 65_536, alpha=1e-9
+    )
+    assert rejecting(verdict) == {"evenness of calls"}, str(verdict)
 
 
 def test_of_coverage():

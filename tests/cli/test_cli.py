@@ -97,6 +97,18 @@ def test_oracle_answers_a_file_and_lines(tmp_path):
     assert "known are" in answers[2]["error"]["message"]
 
 
+def test_oracle_keeps_to_the_limits_it_is_given():
+    two, three = ({"quantity": "phase_pdf", "phase": {"kind": "rayleigh"}, "mu": mu} for mu in ([0, 1], [-1, 0, 1]))
+    lines = "\n".join(map(json.dumps, [two, three, {**two, "id": "long" * 100}]))
+    out = fogproof("oracle", "-", "--max-values", 2, "--max-bytes", 200, stdin=lines)
+    assert out.returncode == 2, out.stderr
+    assert ["error" in json.loads(line) and "value" not in json.loads(line) for line in out.stdout.splitlines()] == [
+        False,
+        True,
+        True,
+    ]
+
+
 def test_oracle_gives_the_answers_that_physics_has():
     airlight = {"quantity": "airlight_integral", "sigma_t": 0.5, "h": 0, "a": -1, "b": 1}
     empty = {**REQUEST, "medium": {"sigma_a": 0, "sigma_s": 0}, "ray": {**REQUEST["ray"], "length": "inf"}}

@@ -136,6 +136,20 @@ def test_a_program_that_ignores_the_end_of_its_input_is_killed_and_told_of(tmp_p
     assert time.monotonic() - started < 60
 
 
+@pytest.mark.parametrize(
+    ("end", "note"), [("sys.exit(5)", "ended with exit code 5"), ("out.write(b'bye')", "wrote 3 bytes more")]
+)
+def test_what_a_program_does_at_its_end_is_noted(tmp_path, end, note):
+    path = program(tmp_path)
+    with open(path[-1], "a") as file:
+        file.write(f"\n{end}\n")
+    outcome = judged(path)
+    assert outcome.verdict.outcome == "not rejected"
+    assert note in outcome.notes[0]
+    dies = judged(program(tmp_path, "os._exit(3)"))
+    assert dies.notes == ()  # the verdict says it
+
+
 @pytest.mark.parametrize("leaving", ["", "os.setsid()"])
 def test_children_end_with_their_program(tmp_path, leaving):
     """Those that stay in its group, and those that left it."""

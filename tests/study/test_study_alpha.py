@@ -10,7 +10,7 @@ from study_fixtures import LIT, SMALL, drawn, kinds, study_from
 from fogproof.study.aggregate import Level
 from fogproof.study.batches import COLUMNS
 from fogproof.study.convergence import Z, order_of, rmse
-from fogproof.study.judgement import _scatter
+from fogproof.study.judgement import _scatter, _scrambled
 
 
 @pytest.mark.parametrize("alpha", [1e-6, 0.01])
@@ -42,6 +42,17 @@ def test_the_scatter_of_replicates_is_tested_on_both_sides():
     statistic = np.sum((means - means.mean()) ** 2) * 100
     right = 2 * min(stats.chi2.sf(statistic, 23), stats.chi2.cdf(statistic, 23))
     assert _scatter(level(means, 100), 1.0, 1e-6).p_value == pytest.approx(min(1.0, right), rel=1e-9)
+
+
+def test_means_of_scrambled_points_have_students_law_with_room_for_skewness():
+    """Whatever the error of the reference, and if all means are alike: then one hit more or less is no bias."""
+    means, alpha = np.random.default_rng().gamma(4.0, size=40), 0.01
+    stderr = means.std(ddof=1) / np.sqrt(40)
+    growth = abs(stats.skew(means)) / (3 * np.sqrt(40)) * stats.norm.isf(alpha / 2) ** 3
+    for z, error in ((1.0, 0.0), (4.0, 0.0), (4.0, 2 * stderr)):
+        found = _scrambled(level(means, 64), means.mean() + z * stderr, error, alpha)
+        right = 2 * stats.t.sf(z - error / stderr, 39) * np.exp(growth)
+        assert found.p_value == pytest.approx(min(1.0, right), rel=1e-6)
 
 
 def test_intervals_of_rmse_and_order_are_as_wide_as_they_say():

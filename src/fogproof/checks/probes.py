@@ -12,6 +12,8 @@ from fogproof.checks.subject import Subject, call, in_domain, rounding_spread
 from fogproof.checks.verdict import Finding, Resolution
 from fogproof.errors import SubjectError, shorten
 
+_ASKED = 1024  # points at which the pdf is asked twice
+_SAME = 1e-6  # relative: threads may add in another order
 _SPREAD = 1 << 16  # points of the domain at which eval and pdf are held against each other
 _CLEAR = 1e-6  # distance from the edge of a support, along coordinates from 0 to 1
 _LOST = 1e-9  # share of the integral of eval that underflow may lose
@@ -25,6 +27,18 @@ def reference_agreement(subject: Subject, points: np.ndarray) -> Finding:
     p = subject.density(points)
     slack = reference.error + rounding_spread(subject.density, points, subject.roundoff)
     return agreement("pdf against the reference", p, np.broadcast_to(reference.value, p.shape), slack, points)
+
+
+def pdf_twice(subject: Subject, points: np.ndarray) -> list[Finding]:
+    """The pdf must give the same points the same answer: one finding if it does not, none if it does."""
+    points = points[:_ASKED]
+    first, again = subject.density(points), subject.density(points)
+    differ = ~(np.abs(first - again) <= _SAME * np.abs(first)) & (first != again) & ~(np.isnan(first) & np.isnan(again))
+    if not differ.any():
+        return []
+    at = int(np.argmax(differ))
+    message = f"pdf({shorten(points[at])}) is {first[at]:.9g}, and {again[at]:.9g} the second time"
+    return [Finding("function of its point", "rejected", message, effect=float(np.mean(differ)), cause="hidden state")]
 
 
 def support_of_eval(subject: Subject, pilot: np.ndarray) -> Finding:

@@ -18,7 +18,10 @@ UNIT_ROUNDOFF: dict[Precision, float] = {"float64": 2.0**-53, "float32": 2.0**-2
 
 @dataclass(frozen=True)
 class Subject:
-    """A sampler and all it declares; the fields are the arguments of `check_sampler`."""
+    """A sampler and all it declares; the fields are the arguments of `check_sampler`, but for the last.
+
+    pilot  how many samples there are for the first look, None if as many as anybody wants
+    """
 
     sample: Callable[..., Any]
     pdf: Callable[[np.ndarray], Any]
@@ -38,6 +41,7 @@ class Subject:
     breaks: Mapping[str, Any] = field(default_factory=dict)
     support: Domain | None = None
     inverse: Callable[[np.ndarray], Any] | None = None
+    pilot: int | None = None
 
     @property
     def bits(self) -> int:
@@ -125,7 +129,7 @@ def _reshaping(got: tuple[int, ...], wanted: tuple[int, ...]) -> str:
         return "; transpose it: one point a row"
     if got == (*wanted, 1):
         return "; drop the last axis: x[:, 0]"
-    if got == () and len(wanted) == 1:
+    if got in ((), (1,)) and len(wanted) == 1:
         return "; a constant needs one value a point: np.full(len(x), value)"
     return ""
 
@@ -161,16 +165,18 @@ def in_domain(domain: Domain, x: np.ndarray, roundoff: float) -> np.ndarray:
 def nudged(x: np.ndarray, roundoff: float) -> list[np.ndarray]:
     """Return copies of the points, each moved along one coordinate by a few roundings, both ways.
 
-    How much a density changes there is how much of a difference rounding alone can explain.
+    How much a density changes there is how much of a difference rounding alone can explain. A coordinate of a vector is rounded as
+    its own size has it, or as that of the others, up to 1, of which a frame may have made it.
     """
     step = 4 * roundoff
     if x.ndim == 1:
         return [x * (1 + step), x * (1 - step)]
-    moved = []
+    moved, largest = [], np.minimum(np.abs(x).max(axis=1, initial=0.0), 1.0)
     for axis in range(x.shape[1]):
+        size = np.maximum(np.abs(x[:, axis]), largest)
         for sign in (step, -step):
             copy = x.copy()
-            copy[:, axis] += sign
+            copy[:, axis] += sign * size
             moved.append(copy)
     return moved
 

@@ -27,6 +27,8 @@ class SphericalTriangle:
     shape = (3,)
 
     def __post_init__(self) -> None:
+        for name in ("a", "b", "c"):
+            object.__setattr__(self, name, tuple(map(float, getattr(self, name))))
         corners = np.array([self.a, self.b, self.c], dtype=float)
         lengths = np.linalg.norm(corners, axis=1) if corners.shape == (3, 3) else np.zeros(1)
         if not np.all((lengths > 0) & np.isfinite(lengths)) or self._determinant == 0:
@@ -53,7 +55,9 @@ class SphericalTriangle:
         a, b, c = self._corners
         sign = np.sign(self._determinant)
         sides = [np.cross(first, second) * sign for first, second in ((a, b), (b, c), (c, a))]
-        inner = np.all([x @ side >= -slack * np.linalg.norm(side) for side in sides], axis=0)
+        sines = [np.linalg.norm(side) for side in sides]
+        room = slack / min(sines)  # formulas that rest on the excess of the angles lose so much on a small triangle
+        inner = np.all([x @ side >= -room * sine for side, sine in zip(sides, sines, strict=True)], axis=0)
         return UnitSphere().contains(x, slack) & inner
 
     def law(self, pilot: np.ndarray) -> Law:

@@ -22,6 +22,8 @@ class Triangle:
     c: tuple[float, ...]
 
     def __post_init__(self) -> None:
+        for name in ("a", "b", "c"):
+            object.__setattr__(self, name, tuple(map(float, getattr(self, name))))
         if len(self.a) not in (2, 3) or not len(self.a) == len(self.b) == len(self.c):
             raise InvalidValueError("a", "must be two or three numbers, as many as b and c", self.a)
         if not self.measure > 0:

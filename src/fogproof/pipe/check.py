@@ -90,7 +90,7 @@ def check_file(path: str | Path, spec: str | Path | Mapping[str, Any], settings:
 
 def _of_file(path: Path, base: Spec, settings: Settings) -> Outcome:
     rows, named = read_rows(path, len(base.columns), base.type)
-    columns = _columns(path, base, rows.shape[1], named)
+    columns = _columns(path, base, rows.shape, named)
     precision: Precision = base.precision or ("float32" if rows.dtype == np.float32 else "float64")
     if not base.samples_points:
         options: dict[str, Any] = {
@@ -100,7 +100,7 @@ def _of_file(path: Path, base: Spec, settings: Settings) -> Outcome:
         }
         return Outcome(check_estimator(draws_of(rows, columns), expectation_of(base), **options))
     truth = truth_of(base, precision)
-    hint = misread(truth.domain, rows, columns, 1e-7 if precision == "float32" else 1e-16)
+    hint = misread(truth.domain, rows, columns)
     if hint:
         return Outcome(failed(ProgramError(f"the file {hint[0]}", hint[1]), settings))
     draw = draw_of(rows, columns, truth.domain)
@@ -111,7 +111,7 @@ def _of_file(path: Path, base: Spec, settings: Settings) -> Outcome:
         subject = _subject(base, truth, _never, _never, precision)
         return Outcome(check_ratios(subject, draw, settings.alpha, settings.seed))
     recorded = Recorded(draw)
-    subject = _subject(base, truth, recorded.sample, partial(_value, truth), precision)
+    subject = _subject(base, truth, recorded.sample, partial(_value, truth), precision, recorded.pilot)
     most = min(settings.samples or base.samples or recorded.tested, truth.most or recorded.tested)
     verdict = check_recorded(recorded, subject, most, settings.resolution, settings.alpha, settings.seed)
     return Outcome(verdict, truth.notes)
@@ -206,10 +206,10 @@ def _estimator_options(spec: Spec, precision: Precision) -> dict[str, Any]:
     return {"precision": precision, **{name: getattr(spec, name) for name in names}}
 
 
-def _subject(spec: Spec, truth: KnownLaw, sampler: Any, pdf: Any, precision: Precision) -> Subject:
+def _subject(spec: Spec, truth: KnownLaw, sampler: Any, pdf: Any, precision: Precision, pilot: int = 0) -> Subject:
     """Return the samples of a file as a subject: nobody is there to be asked for others."""
     options = _sampler_options(spec, truth, precision, None)
-    return Subject(sampler, pdf, truth.domain, None, truth.atoms, **options)
+    return Subject(sampler, pdf, truth.domain, None, truth.atoms, pilot=pilot, **options)
 
 
 def _value(truth: KnownLaw, x: np.ndarray) -> np.ndarray:
@@ -221,16 +221,21 @@ def _never(x: np.ndarray) -> np.ndarray:
     raise InvalidInputError("there is nobody to be asked for a density", "pdf")
 
 
-def _columns(path: Path, spec: Spec, count: int, named: tuple[str, ...]) -> tuple[str, ...]:
+def _columns(path: Path, spec: Spec, shape: tuple[int, ...], named: tuple[str, ...]) -> tuple[str, ...]:
     """Return the names of a file's columns: those of the spec, else its own, else those of bare points or values."""
-    first = "x" if spec.samples_points else "value"
+    (rows, count), first = shape, "x" if spec.samples_points else "value"
     bare = int(np.prod(spec.domain.shape, dtype=int)) if spec.domain is not None else 1
     columns = spec.columns or named or (first,) * (count if not spec.samples_points else min(count, bare))
     if len(columns) != count:
         told = f"{len(columns)} are named" if spec.columns or named else f"a point has {bare}"
         fix = 'name them all in the spec, as in columns = ["x", "x", "x", "pdf"]'
+        if rows == len(columns):
+            fix = "transpose it: one sample a row"
         raise InvalidInputError(f"{path} has {count} columns, and {told}; {fix}", "columns")
     points = columns.count("x")
+    for name in set(columns) - {"x", "weight", "value"}:
+        if columns.count(name) > 1:
+            raise InvalidInputError(f"{path} has {columns.count(name)} columns {name}; there is one at most", "columns")
     if spec.samples_points and points != bare:
         raise InvalidInputError(f"{path} has {points} columns x; a point of {spec.domain} has {bare}", "columns")
     if not spec.samples_points and "value" not in columns:

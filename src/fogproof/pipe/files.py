@@ -111,7 +111,7 @@ def _name(cell: bytes, path: Path) -> str:
     bare = word.rstrip("0123456789_")
     name = _NAMES.get(bare, bare)
     if name not in _KNOWN:
-        raise InvalidInputError(f"{path} has a column {word!r}; known are {', '.join(_KNOWN)}", str(path))
+        raise InvalidInputError(f"{path} has a column {shorten(word, 40)}; known are {', '.join(_KNOWN)}", str(path))
     return name
 
 

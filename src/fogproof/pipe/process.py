@@ -123,12 +123,16 @@ class Process:
         at = min(len(self._ahead), len(view))
         view[:at], self._ahead = self._ahead[:at], self._ahead[at:]
         while at < len(view):
-            self._turn(deadline, seconds, told(at))
-            with contextlib.suppress(BlockingIOError):
+            if self._pending:
+                self._turn(deadline, seconds, told(at))
+            try:
                 came = os.readv(self._out, [view[at:]])
-                if not came:
-                    raise self._ended(told(at))
-                at += came
+            except BlockingIOError:
+                self._turn(deadline, seconds, told(at))
+                continue
+            if not came:
+                raise self._ended(told(at))
+            at += came
 
     def unasked(self) -> bytes:
         """Return some of what the program has written though nothing was asked, without waiting."""
@@ -158,6 +162,7 @@ class Process:
 
         `note` says afterwards what it did that was not asked of it.
         """
+        before = self._popen.poll()
         with contextlib.suppress(OSError):
             self._close(self._in)
         deadline = time.monotonic() + self.timeouts.end
@@ -172,6 +177,8 @@ class Process:
         finally:
             code = self._popen.poll()
             self._kill()
+        while self._out in self._open and (rest := self._read(_CHUNK)):
+            extra += len(rest)
         self._listen()
         for pipe in list(self._open):
             self._close(pipe)
@@ -179,7 +186,7 @@ class Process:
             self.note = f"it wrote {extra} bytes more than it was asked for"
         elif code is None:
             self.note = f"it did not end within {self.timeouts.end:g} s of the end of its input, and was killed"
-        elif code:
+        elif code and before is None:
             self.note = f"it {_end_of(code)} after the end of its input"
 
     def _kill(self) -> None:

@@ -1,7 +1,7 @@
 """Samples that are already there, as `check_sampler`'s machinery takes them: every row of the file is counted once at most.
 
-The first quarter (16384 rows at most) is the pilot, which sets scales and is not counted; where the check wants a larger one, its
-rows are drawn again. The rest is what is tested, in the order of the file.
+The first quarter (16384 rows at most) is the pilot, which sets scales and is not counted. The rest is what is tested, in the order
+of the file.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from fogproof.checks.prepared import PILOT
 from fogproof.checks.sampler import SamplerCheck
 from fogproof.checks.subject import Subject
 from fogproof.contracts import Draw
-from fogproof.errors import InvalidInputError
+from fogproof.errors import InvalidInputError, SubjectError
 
 LEAST = 200
 """Rows that a file must have."""
@@ -42,14 +42,19 @@ class Recorded:
         self._at = self.pilot
 
     def sample(self, rng: np.random.Generator, n: int) -> Draw:
-        """Return the next n rows; before `begin`, and where all have been handed out, some of them again."""
-        if self._at is None:
-            rows = np.arange(n) if n <= self.pilot else rng.integers(self.pilot, size=n)
+        """Return the next n rows; before `begin` those of the pilot, and to explain a verdict some of those judged."""
+        explaining = self._at == len(self._draw.x)
+        if n == self.pilot and (self._at is None or explaining):
+            rows = np.arange(n)
+        elif self._at is None:
+            rows = rng.integers(self.pilot, size=n)
         elif self._at + n <= len(self._draw.x):
             rows = np.arange(self._at, self._at + n)
             self._at += n
+        elif n <= self.tested:
+            rows = np.arange(self.pilot, self.pilot + n)
         else:
-            rows = rng.integers(len(self._draw.x), size=n)
+            raise SubjectError(f"there are no {n} samples", "file")  # the same ones twice would look like atoms
         x, *others = (None if part is None else part[rows] for part in self._draw)
         assert x is not None
         return Draw(x, *others)

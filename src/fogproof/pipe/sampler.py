@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from fogproof.checks.subject import UNIT_ROUNDOFF, Precision
+from fogproof.checks.subject import Precision
 from fogproof.contracts import Draw
 from fogproof.domains import Domain
 from fogproof.pipe.blocks import swapped
@@ -16,6 +16,8 @@ from fogproof.pipe.program import Program
 
 LARGEST_SEED = 2**53
 """Whole numbers below it are exact in the float64 of every language."""
+
+_SLACK = 1e-5  # a point that is off by less is read as it was meant
 
 
 def draw_of(rows: np.ndarray, columns: tuple[str, ...], domain: Domain) -> Draw:
@@ -70,7 +72,7 @@ class PipeSampler:
         draw = draw_of(answer, columns, self.domain)
         if not self._seen and count >= 64:
             self._seen = True
-            hint = misread(self.domain, answer, columns, UNIT_ROUNDOFF[self.precision])
+            hint = misread(self.domain, answer, columns)
             if hint:
                 raise self.program.refuse(*hint)
         return draw
@@ -89,7 +91,7 @@ class PipeSampler:
         return self.program.ask(request, rows, len(x), columns, 0, self.parameters)
 
 
-def misread(domain: Domain, rows: np.ndarray, columns: tuple[str, ...], roundoff: float) -> tuple[str, str] | None:
+def misread(domain: Domain, rows: np.ndarray, columns: tuple[str, ...]) -> tuple[str, str] | None:
     """Return what is plainly wrong with how the numbers are written, in words and as a class; None if nothing is.
 
     Only where hardly any point lies in the domain as it is read, and nearly all do as it is read otherwise.
@@ -103,7 +105,7 @@ def misread(domain: Domain, rows: np.ndarray, columns: tuple[str, ...], roundoff
             x = x.astype(np.float64)
             plain = np.abs(x).max(axis=1, initial=0) < 1e30  # what bytes in a wrong order seldom are
             tiny = (np.abs(x) < 1e-30) & (x != 0)
-            inside = domain.contains(x if domain.shape else x[:, 0], 16 * roundoff)
+            inside = domain.contains(x if domain.shape else x[:, 0], _SLACK)
         return float(np.mean(valid & plain & inside & ~tiny.any(axis=1)))
 
     if good(rows) > 0.1:

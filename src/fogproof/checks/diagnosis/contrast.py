@@ -57,7 +57,8 @@ class Contrast:
     @staticmethod
     def of(subject: Subject, n: int, rng: np.random.Generator) -> Contrast | None:
         """Draw about n samples, and as many points of a law that follows a pilot of them; None if there are too few."""
-        pilot, x = good_points(subject, rng, max(n // 2, 1 << 12)), good_points(subject, rng, n)
+        wanted = subject.pilot or max(n // 2, 1 << 12)
+        pilot, x = good_points(subject, rng, wanted), good_points(subject, rng, n)
         if len(pilot) < _PER_CELL or len(x) < _PER_CELL:
             return None
         law = subject.domain.law(pilot)

@@ -76,8 +76,9 @@ def _setting(subject: Subject, n: int, seed: int) -> Setting | None:
 
 def _explained(subject: Subject, samples: int, seed: int) -> Explained | None:
     setting: Setting | None = None
+    least = 1 << 12 if subject.pilot is None else 0  # of samples that are there already, no more can be drawn
     for n in _SIZES:
-        setting = _setting(subject, min(n, max(samples, 1 << 12)), seed)
+        setting = _setting(subject, min(n, max(samples, least)), seed)
         if setting is None:
             return None
         base = setting.contrast.fit(setting.p(setting.contrast.points))
@@ -132,8 +133,8 @@ def _best(setting: Setting, base: Fit, hypotheses: list[Hypothesis]) -> Explaine
     for _, order, hypothesis, value, room in closer[:_KEPT]:
         error = 0.0
         if hypothesis.trials:
-            value, _ = _fitted(setting, hypothesis, value - room, value + room, 25)
-            error = _error(setting, hypothesis, value, room)
+            error = _error(middle, hypothesis, value, room)
+            value, error = _polished(setting, hypothesis, value, error)
         fit = setting.contrast.fit(hypothesis.density(setting, value)(setting.contrast.points))
         share = 1 - max(fit.left - 2 * math.sqrt(2 * fit.freedom), 0.0) / base.left
         score = fit.likelihood - hypothesis.price(n)
@@ -174,16 +175,21 @@ def _error(setting: Setting, hypothesis: Hypothesis, value: float, room: float) 
 
 
 def _sharpened(setting: Setting, found: Explained) -> Explained:
-    """Return the same hypothesis with its parameter fitted to more samples, by parabolas through the likelihood."""
-    value, error = found.value, found.error
+    """Return the same hypothesis with its parameter fitted to more samples."""
+    value, error = _polished(setting, found.hypothesis, found.value, found.error)
+    return replace(found, value=value, error=error)
+
+
+def _polished(setting: Setting, hypothesis: Hypothesis, value: float, error: float) -> tuple[float, float]:
+    """Return a parameter and its standard error on more samples than it was fitted to, by parabolas through the likelihood."""
     for _ in range(2):
-        below, at, above = (_likelihood(setting, found.hypothesis, value + step) for step in (-error, 0.0, error))
+        below, at, above = (_likelihood(setting, hypothesis, value + step) for step in (-error, 0.0, error))
         curvature = (2 * at - below - above) / error**2
-        if not curvature > 0:
-            return found
+        if not (curvature > 0 and math.isfinite(curvature)):
+            break
         value += float(np.clip((above - below) / (2 * error * curvature), -3 * error, 3 * error))
         error = 1 / math.sqrt(curvature)
-    return replace(found, value=value, error=error)
+    return value, error
 
 
 def _constant(subject: Subject, integral: Finding, cause: str, samples: int, seed: int) -> tuple[str, str]:

@@ -18,6 +18,7 @@ from fogproof.checks.statistics.tails import binomial_interval
 from fogproof.checks.verdict import EffectInterval, Finding, Resolution
 
 _SKIPPED = 0.5  # of the expected number of samples: a place with fewer is one that is avoided
+_NARROW = 64  # cells: where there are fewer, one that is too full is no point
 
 
 @dataclass(frozen=True)
@@ -168,7 +169,8 @@ def _finding(
     cause = ""
     if rejected:
         cause = "skipped band" if best.observed < _SKIPPED * n * best.probability else "shape"
-        if atoms and direction == "more" and best.last - best.first == 1 and cells * best.probability < 4:
+        narrow = best.last - best.first == 1 and cells * best.probability < 4 and cells >= _NARROW
+        if atoms and direction == "more" and narrow:
             cause = "atom"
     low, high = binomial_interval(best.observed, n, MISS)
     return Finding(

@@ -1,0 +1,192 @@
+"""Samples that are already there: right ones pass, wrong ones are named, in every format and with each kind of truth."""
+
+import numpy as np
+import pytest
+
+from fogproof.errors import FogproofError
+from fogproof.pipe.check import Settings, check_file
+
+G = 0.7
+DIRECTIONS = {"axis": [0, 0, 1], "phase": {"kind": "henyey-greenstein", "g": G}}
+PATHS = {
+    "medium": {"sigma_a": 0.5, "sigma_s": 0.0},
+    "ray": {"origin": [0, 0, 0], "direction": [0, 0, 1], "length": 3.0},
+}
+
+
+def directions(n, g=G):
+    u = np.random.default_rng().random((n, 2))
+    mu = (1 + g * g - ((1 - g * g) / (1 - g + 2 * g * u[:, 0])) ** 2) / (2 * g)
+    sine, phi = np.sqrt(1 - mu * mu), 2 * np.pi * u[:, 1]
+    return np.stack([sine * np.cos(phi), sine * np.sin(phi), mu], axis=-1)
+
+
+def density(x, g=G):
+    return (1 - g * g) / (4 * np.pi * (1 + g * g - 2 * g * x[:, 2]) ** 1.5)
+
+
+def paths(n):
+    return np.minimum(-np.log1p(-np.random.default_rng().random(n)) / 0.5, 3.0)
+
+
+def written(path, array, header=""):
+    if path.suffix == ".npy":
+        np.save(path, array)
+    elif path.suffix == ".csv":
+        np.savetxt(path, array, delimiter=",", header=header, comments="")
+    else:
+        path.write_bytes(np.ascontiguousarray(array).tobytes())
+    return path
+
+
+@pytest.mark.parametrize("suffix", ["npy", "csv", "bin"])
+def test_samples_against_the_oracle(tmp_path, suffix):
+    path = tmp_path / f"samples.{suffix}"
+    spec = {**DIRECTIONS, "columns": ["x", "x", "x"]} if suffix == "bin" else DIRECTIONS
+    right = check_file(written(path, directions(20_000)), spec).verdict
+    assert right.outcome == "not rejected", right
+    wrong = check_file(written(path, directions(20_000, 0.75)), spec).verdict
+    assert (wrong.outcome, wrong.cause) == ("rejected", "another parameter"), wrong
+    assert wrong.reproduce.startswith("fogproof check /")
+
+
+def test_few_rows_are_enough_to_begin_with(tmp_path):
+    """Nothing is counted twice, and a short file is judged as far as it goes."""
+    verdict = check_file(written(tmp_path / "x.npy", directions(400)), DIRECTIONS).verdict
+    assert verdict.outcome != "rejected", verdict
+    assert verdict.samples == 300
+    flipped = check_file(written(tmp_path / "x.npy", -directions(400)), DIRECTIONS).verdict
+    assert flipped.cause == "sign convention"
+    with pytest.raises(FogproofError, match="at least 200"):
+        check_file(written(tmp_path / "x.npy", directions(100)), DIRECTIONS)
+
+
+def test_an_atom_and_returned_densities(tmp_path):
+    t = paths(30_000)
+    p = np.where(t == 3, np.exp(-1.5), 0.5 * np.exp(-0.5 * t))
+    rows = np.stack([t, p, t == 3], axis=-1)
+    path = written(tmp_path / "t.csv", rows, "t,pdf,event")
+    assert check_file(path, PATHS).verdict.outcome == "not rejected"
+    rows[:, 1] = 0.5 * np.exp(-0.5 * t)
+    assert check_file(written(path, rows, "t,pdf,event"), PATHS).verdict.cause == "wrong pdf returned"
+    rows = rows[rows[:, 2] == 0]
+    assert check_file(written(path, rows, "t,pdf,event"), PATHS).verdict.cause == "wrong probability of an atom"
+
+
+def test_equal_samples_are_found(tmp_path):
+    """Half of the samples written twice: a file is no excuse for repeats."""
+    x = directions(10_000)
+    verdict = check_file(written(tmp_path / "x.npy", np.concatenate([x, x])), DIRECTIONS).verdict
+    assert verdict.outcome == "rejected"
+    assert any(f.check == "repeated points" and f.outcome == "rejected" for f in verdict.findings)
+
+
+def test_densities_of_the_samples_alone(tmp_path):
+    """Without a law the identity of importance sampling judges: q / pdf averages to Q in every cell."""
+    spec = {"domain": "sphere", "columns": ["x", "x", "x", "pdf"]}
+    x = directions(60_000, 0.5)
+    path = tmp_path / "x.npy"
+    right = check_file(written(path, np.column_stack([x, density(x, 0.5)])), spec).verdict
+    assert right.outcome == "not rejected", right
+    for claimed in (density(x, 0.6), density(-x, 0.5), 1.05 * density(x, 0.5)):
+        wrong = check_file(written(path, np.column_stack([x, claimed])), spec).verdict
+        assert wrong.outcome == "rejected", wrong
+    hole = np.where(x[:, 2] > 0.9, 0.0, density(x, 0.5))
+    assert check_file(written(path, np.column_stack([x, hole])), spec).verdict.cause == "claimed hole"
+
+
+def test_densities_on_a_line_without_end(tmp_path):
+    t = -np.log1p(-np.random.default_rng().random(40_000))
+    spec = {"domain": "half-line", "columns": ["x", "pdf"]}
+    path = written(tmp_path / "t.npy", np.stack([t, np.exp(-t)], axis=-1))
+    assert check_file(path, spec).verdict.outcome == "not rejected"
+    path = written(path, np.stack([t, 1.2 * np.exp(-1.2 * t)], axis=-1))
+    assert check_file(path, spec).verdict.outcome == "rejected"
+
+
+def test_a_table_judges_no_more_samples_than_it_can(tmp_path):
+    """Straight lines through a curved density are not the density."""
+    x = np.linspace(0, 1, 41)
+    np.savetxt(tmp_path / "pdf.csv", np.stack([x, 3 * x**2], axis=-1), delimiter=",")
+    spec = {"domain": {"kind": "interval", "a": 0, "b": 1}, "table": str(tmp_path / "pdf.csv")}
+    samples = np.random.default_rng().random(200_000) ** (1 / 3)
+    outcome = check_file(written(tmp_path / "x.npy", samples), spec)
+    assert outcome.verdict.outcome == "not rejected", outcome.verdict
+    assert "is good enough to judge" in outcome.notes[0]
+    assert outcome.verdict.samples < 140_000
+    exact = check_file(tmp_path / "x.npy", {**spec, "exact": True}).verdict
+    assert exact.outcome == "rejected"  # by its integral: the trapezoid rule is off by 3e-4
+    wrong = check_file(written(tmp_path / "x.npy", samples**1.1), spec).verdict
+    assert wrong.outcome == "rejected"
+    np.savetxt(tmp_path / "pdf.csv", np.stack([x[::10], 3 * x[::10] ** 2], axis=-1), delimiter=",")
+    with pytest.raises(FogproofError, match="too coarse"):
+        check_file(tmp_path / "x.npy", spec)
+
+
+def test_a_map_on_the_square(tmp_path):
+    rng = np.random.default_rng()
+    weights = rng.random((8, 16)) ** 2 + 0.01
+    weights *= weights.size / weights.sum()
+    np.save(tmp_path / "map.npy", weights)
+    cell = rng.choice(weights.size, 30_000, p=weights.ravel() / weights.size)
+    x = (np.stack([cell % 16, cell // 16], axis=-1) + rng.random((30_000, 2))) / (16, 8)
+    spec = {"domain": "square", "table": str(tmp_path / "map.npy")}
+    assert check_file(written(tmp_path / "x.npy", x), spec).verdict.outcome == "not rejected"
+    assert check_file(written(tmp_path / "x.npy", 1 - x), spec).verdict.outcome == "rejected"
+
+
+def test_realisations(tmp_path):
+    values = np.random.default_rng().random(5000)
+    path = written(tmp_path / "values.npy", values)
+    assert check_file(path, {"reference": 0.5, "bounds": [0, 1]}).verdict.outcome == "not rejected"
+    assert check_file(path, {"reference": 0.55, "bounds": [0, 1]}).verdict.outcome == "rejected"
+
+
+@pytest.mark.parametrize(
+    ("array", "name", "cause"),
+    [
+        (lambda x: x.byteswap(), "x.npy", "byte order"),
+        (lambda x: np.ascontiguousarray(x.T).reshape(-1, 3), "x.npy", "layout"),
+        (lambda x: x.astype(np.float32), "x.bin", "number type"),
+    ],
+)
+def test_what_is_written_wrongly_is_named(tmp_path, array, name, cause):
+    path = written(tmp_path / name, array(directions(4000)))
+    spec = {**DIRECTIONS, "columns": ["x", "x", "x"]}
+    assert check_file(path, spec).verdict.cause == cause
+
+
+BROKEN = {
+    "x.npy": (
+        b"",
+        b"\x93NUMPY",
+        b"\x93NUMPY\x01\x00\xff\xff",
+        b"no array",
+        b"\x93NUMPY\x01\x00\x10\x00{'descr': '|O'}\n",
+    ),
+    "x.csv": (b"", b"a,b,c\n1,2,3\n", b"1,2\n3\n", b"x,x,x\n", b"1,2,\xff\n", b"\n\n"),
+    "x.bin": (b"", b"12345"),
+    "x.exr": (b"",),
+    "x": (b"",),
+}
+
+
+@pytest.mark.parametrize(("name", "content"), [(name, each) for name, all_ in BROKEN.items() for each in all_])
+def test_broken_files_are_told_in_a_sentence(tmp_path, name, content):
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(FogproofError, match=name):
+        check_file(tmp_path / name, {**DIRECTIONS, "columns": ["x", "x", "x"]})
+
+
+def test_columns_must_be_named_where_there_are_more(tmp_path):
+    path = written(tmp_path / "x.npy", np.ones((500, 4)))
+    with pytest.raises(FogproofError, match="name them all"):
+        check_file(path, DIRECTIONS)
+    with pytest.raises(FogproofError, match="has no densities"):
+        check_file(written(path, directions(500)), {"domain": "sphere"})
+    with pytest.raises(FogproofError, match="cannot read"):
+        check_file(tmp_path / "nowhere.npy", DIRECTIONS, Settings(seed=1))
+    with pytest.raises(FogproofError, match="transpose it"):
+        check_file(written(path, directions(500).T), {**DIRECTIONS, "columns": ["x", "x", "x"]})
+    with pytest.raises(FogproofError, match="2 columns pdf"):
+        check_file(written(path, np.ones((500, 3))), {"domain": "line", "columns": ["x", "pdf", "pdf"]})
