@@ -1,6 +1,6 @@
 """The battery of relations on our own path tracer: each fault and the relations it breaks, and right runs without a false alarm.
 
-python tools/relations.py [--samples 200000] [--runs 100] [--alpha 1e-3]
+python tools/relations.py [--samples 500000] [--runs 100] [--alpha 1e-3]
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ FAULTS = {
 def main() -> int:
     """Print both tables; 1 where a fault is missed or not isolated, or right runs are rejected more often than alpha."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--samples", type=int, default=200_000)
+    parser.add_argument("--samples", type=int, default=500_000)
     parser.add_argument("--runs", type=int, default=100, help="right runs, in four settings each")
     parser.add_argument("--alpha", type=float, default=1e-3, help="of each right run in each setting")
     options = parser.parse_args()

@@ -62,7 +62,7 @@ class Resolutions:
         across, beyond = _within(values)
         rows = [(name, kind, min(max(value, across.low), across.high)) for name, kind, value in rows]
         axes = Axes(sheet, (left, top, sheet.width - left - 20, sheet.height - top - 50), across, y)
-        axes.frame("smallest relative error that would have been caught", ticks=(6, 0))
+        axes.frame("smallest relative error caught", ticks=(6, 0))
         for number, (kind, count) in enumerate(zip(kinds, counts, strict=True)):
             at = np.array([(value, y) for y, (_, its, value) in enumerate(rows) if its == kind])
             slope = number + 0.35 - 0.7 * (np.arange(count) + 0.5) / count

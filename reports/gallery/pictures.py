@@ -9,11 +9,12 @@ from pathlib import Path
 import numpy as np
 
 from fogproof.checks.streams import batch_generator
-from fogproof.errors import InvalidInputError, shorten
+from fogproof.errors import InvalidInputError, NotInstalledError, shorten
 from fogproof.reports.charts.pictures import Picture
 from fogproof.reports.files import write_file
 from fogproof.reports.gallery.airlight import FoggyScene, Glow, SamplesAroundALight
 from fogproof.reports.gallery.media import Fog, Transmittances, closed_media, tracked_media
+from fogproof.reports.gallery.multiple import AerialView, Fire, Snow
 from fogproof.reports.gallery.phase import Approximation, LinearPanel, PolarPanel, SphereSizes
 from fogproof.reports.gallery.plots import Plot, render_plot
 from fogproof.reports.gallery.sky import SkyAndSunset
@@ -39,6 +40,9 @@ def drawings(seed: int) -> dict[str, tuple[str, Plot]]:
         "foggy-scene": ("A scene in fog", FoggyScene()),
         "samples-around-a-light": ("Samples around a light", SamplesAroundALight(stream("samples"))),
         "glow": ("The glow of a light", Glow(stream("glow"))),
+        "snow": ("Snow is white: multiple scattering", Snow(stream("snow"))),
+        "fire": ("Fire", Fire(stream("fire"))),
+        "aerial-view": ("Aerial view", AerialView(stream("aerial"))),
         "sky-and-sunset": ("Blue sky, red sunset", SkyAndSunset(stream("sky"))),
     }
 
@@ -54,9 +58,16 @@ def write_gallery(folder: str | Path, seed: int = 0, names: Sequence[str] = ()) 
         if name not in known:
             raise InvalidInputError(f"no picture is called {shorten(name)}; known are {', '.join(known)}", name)
     pictures: list[tuple[str, Picture, str]] = []
+    missing: list[tuple[str, str]] = []
     for name, (title, drawing) in known.items():
         if not names or name in names:
-            picture = render_plot(drawing, name)
+            try:
+                picture = render_plot(drawing, name)
+            except NotInstalledError as error:
+                if names:  # it was asked for
+                    raise
+                missing.append((title, str(error)))
+                continue
             picture.save(folder / "figures")
             pictures.append((title, picture, f"fogproof gallery {name} -o DIR --seed {seed}"))
     record = {
@@ -66,12 +77,14 @@ def write_gallery(folder: str | Path, seed: int = 0, names: Sequence[str] = ()) 
             {"name": picture.stem, "title": title, "words": picture.words, "reproduce": command}
             for title, picture, command in pictures
         ],
+        "missing": [{"title": title, "reason": reason} for title, reason in missing],
     }
     write_file(folder / "gallery.json", json.dumps(record, indent=1) + "\n")
     page = fill(
         "gallery.html",
         kind="gallery",
         pictures=pictures,
+        missing=missing,
         headline=("Light in fog, in pictures", f"{len(pictures)} pictures, seed {seed}"),
         tone="plain",
     )

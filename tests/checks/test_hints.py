@@ -7,6 +7,7 @@ from fogproof import (
     Ball,
     Discrete,
     HalfLine,
+    Interval,
     InvalidValueError,
     Triangle,
     UnitDisk,
@@ -61,6 +62,7 @@ HINTS = {"breaks": {"breaks": EDGES}, "inverse": {"inverse": environment_inverse
 WRONG = {
     "breaks elsewhere": {"breaks": {"x": [0.31], "y": [0.5]}},
     "breaks of no coordinate": {"breaks": {"mu": [0.5]}},
+    "breaks by the million": {"breaks": {"x": np.arange(1000) / 1000, "y": np.arange(1000) / 1000}},
     "inverse of another law": {"inverse": np.square},
     "inverse that leaves the cube": {"inverse": lambda x: 2 * x},
     "inverse that raises": {"inverse": lambda x: x[:, 7]},
@@ -135,6 +137,13 @@ def test_an_inverse_serves_every_domain(name):
     wrong = check(uneven, pdf, domain, k, inverse=inverse)
     assert wrong.outcome == "rejected"
     assert name == "line" or any("inverse, 1 of" in f.check and f.outcome == "rejected" for f in wrong.findings)
+
+
+def test_an_inverse_is_of_what_lies_between_the_atoms():
+    sample = lambda u: np.where(u[:, 0] < 0.25, 1.0, u[:, 1])  # noqa: E731
+    verdict = check(sample, lambda x: np.full(len(x), 0.75), Interval(0, 1), 2, atoms={1.0: 0.25}, inverse=lambda x: x)
+    assert verdict.outcome == "not rejected", str(verdict)
+    assert verdict.unchecked == ()
 
 
 def test_single_points_have_no_inverse():

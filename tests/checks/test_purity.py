@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.special import ndtri
 
-from fogproof import Discrete, Draw, HalfLine, Interval, UnitSphere, UnitSquare, check_sampler
+from fogproof import Box, Discrete, Draw, HalfLine, Interval, UnitSphere, UnitSquare, check_sampler
 from fogproof.checks.call_sizes import CALLS, one_law
 from fogproof.checks.subject import Subject
 
@@ -270,6 +270,13 @@ def test_an_interval_may_lie_far_from_0():
     stateful = own_generator(np.random.default_rng())
     verdict = check_sampler(lambda u: 1e9 + stateful(u), lambda x: np.ones(len(x)), far, dimensions=1, samples=50_000)
     assert verdict.cause == "hidden state"
+
+
+@pytest.mark.parametrize("corner", [0.0, 1e12, -1e12])
+def test_a_box_may_lie_far_from_0(corner):
+    box = Box((corner,) * 3, (corner + 1,) * 3)
+    verdict = check_sampler(lambda u: corner + u, lambda x: np.ones(len(x)), box, dimensions=3, samples=50_000)
+    assert verdict.outcome == "not rejected", str(verdict)
 
 
 def test_a_pdf_with_a_state_of_its_own_is_found():

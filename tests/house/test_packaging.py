@@ -31,7 +31,8 @@ def test_every_package_folder_is_listed():
 @pytest.mark.parametrize("name", ["analytic", "estimators", "reports"])
 def test_top_level_folders_are_mapped_and_linked(name):
     assert PROJECT["tool"]["setuptools"]["package-dir"][f"fogproof.{name}"] == name
-    assert (ROOT / "src/fogproof" / name).resolve() == ROOT / name
+    if (ROOT / ".git").exists():  # what is unpacked from an archive has no links, and needs none
+        assert (ROOT / "src/fogproof" / name).resolve() == ROOT / name
 
 
 def test_importing_fogproof_loads_numpy_alone():

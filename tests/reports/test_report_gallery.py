@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 from report_records import Page
 
-from fogproof.reports import (
-    write_gallery,
-)
+from fogproof.errors import NotInstalledError
+from fogproof.reports import write_gallery
 from fogproof.reports.gallery import pictures as gallery
 from fogproof.reports.gallery.plots import render_plot
 from fogproof.reports.gallery.sky import SkyAndSunset
@@ -44,7 +43,7 @@ def test_page_stands_alone_and_says_what_it_shows(page):
     assert len(set(ids)) == len(ids)
 
 
-@pytest.mark.parametrize("name", ["phase-henyey-greenstein", "samples-around-a-light", "sky-and-sunset"])
+@pytest.mark.parametrize("name", ["phase-henyey-greenstein", "samples-around-a-light", "sky-and-sunset", "aerial-view"])
 def test_seed_decides_the_samples(name):
     first, same, other = (render_plot(gallery.drawings(seed)[name][1], name).svg for seed in (7, 7, 8))
     assert first == same
@@ -60,3 +59,17 @@ def test_colours_of_an_estimate_come_nearer_with_samples():
         words = render_plot(SkyAndSunset(np.random.default_rng(seed), samples), "sky").words
         found.append(float(re.search(r"at most ([0-9]+[.][0-9]+)", words)[1]))
     assert found[1] < found[0] / 10
+
+
+def test_what_cannot_be_drawn_is_said_and_costs_no_other_picture(tmp_path, monkeypatch):
+    class Missing:
+        def draw(self, figure):
+            raise NotInstalledError("miepython", "mie")
+
+    chosen = {"fog": gallery.drawings(0)["fog"], "phase-mie": ("Lorenz-Mie", Missing())}
+    monkeypatch.setattr(gallery, "drawings", lambda seed: chosen)
+    read = Page(write_gallery(tmp_path))
+    assert len(read.all("figure")) == 1
+    assert "Lorenz-Mie is not drawn: miepython is not installed" in " ".join(read.words.split())
+    with pytest.raises(NotInstalledError):
+        write_gallery(tmp_path, names=["phase-mie"])

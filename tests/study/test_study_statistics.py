@@ -352,6 +352,35 @@ def test_more_samples_never_take_less_time():
     assert [t.seconds.tolist() for t in untouched] == [pytest.approx([1, 3]), pytest.approx([5, 4])]
 
 
+@pytest.mark.parametrize("length", [1e-9, 200.0])
+def test_events_too_rare_to_be_met_reject_nothing(length, tmp_path):
+    """All paths end, or none does: nothing varies, where the exact variance is tiny and not 0."""
+    ray = {"origin": [0, 0, 0], "direction": [0, 0, 1], "length": length}
+    scene = {"name": "s", "quantity": "transmittance", "medium": {"sigma_a": 0.25, "sigma_s": 0.25}, "ray": ray}
+    study = study_from(
+        {"samples": [1, 16, 256], "replicates": 4, "scenes": [{**scene, "estimators": kinds("analog", "ratio")}]}
+    )
+    record = drawn(study, tmp_path)
+    assert [e["status"] for e in record["scenes"][0]["estimators"] if e["status"] == "rejected"] == []
+
+
+def test_one_point_of_each_scrambling_rejects_nothing(tmp_path):
+    ray = {"origin": [0, 0, 0], "direction": [0, 0, 1], "length": 4}
+    scene = {"name": "s", "quantity": "transmittance", "medium": {"sigma_a": 0.25, "sigma_s": 0.25}, "ray": ray}
+    for seed in range(12):  # of four hits or misses all are often alike
+        study = study_from(
+            {"samples": [1], "replicates": 4, "seed": seed, "scenes": [{**scene, "estimators": kinds("analog")}]}
+        )
+        assert drawn(study, tmp_path / str(seed))["exit_code"] == 0
+
+
+def test_values_outside_of_what_was_declared_are_told(monkeypatch, tmp_path):
+    monkeypatch.setattr(Planted, "bounds", lambda self, scene: (0.0, MEAN))
+    right = named(planted(monkeypatch, tmp_path, "right"), "right")
+    assert right["outcome"] == "rejected"
+    assert next(f for f in right["findings"] if f["check"] == "bounds")["cause"] == "contract"
+
+
 def test_the_scatter_of_rounds_is_the_interval_of_a_time():
     times = Times(np.array([1.0, 2.0, 4.0, np.nan])).estimate
     assert times.value == pytest.approx(2)

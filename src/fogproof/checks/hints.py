@@ -11,6 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from fogproof.checks.density.charts import Chart
 from fogproof.checks.density.lattice import lattice
 from fogproof.checks.jacobian import agrees
 from fogproof.checks.promises import at_any_atom
@@ -18,6 +19,7 @@ from fogproof.checks.subject import Subject, call, in_domain, numbers
 from fogproof.errors import FogproofError, shorten
 
 _SPREAD = 1 << 14  # points of the domain at which the pdf is looked at
+_MOST_PIECES = {1: 1 << 17, 2: 1 << 14}  # cells of a line and of a plane
 _EDGE = 1e-9  # of the unit cube that rounding may leave
 
 
@@ -70,10 +72,18 @@ def why_not_inverse(subject: Subject, points: np.ndarray) -> str:
     return f"inverse (not used: {wrong})" if wrong else ""
 
 
-def why_not_breaks(subject: Subject, labels: tuple[str, ...], doubt: str) -> str:
-    """Return why given breaks are of no use, "" if they are: `doubt` is what quadrature between them left."""
+def cut(subject: Subject, chart: Chart | None) -> tuple[Chart | None, str]:
+    """Return the chart cut at the given breaks, or as it was and why they are not used."""
+    if not subject.breaks:
+        return chart, ""
+    labels = tuple(axis.label for axis in chart.axes) if chart else ()
     strange = [label for label in subject.breaks if label not in labels]
-    if strange:
+    if strange or chart is None:
         known = ", ".join(labels) or "none"
-        return f"breaks (not used: there is no coordinate {strange[0]!r} to cut; those of this domain are: {known})"
-    return f"breaks (not used: the pdf is not smooth between them; {doubt})" if subject.breaks and doubt else ""
+        at = f"there is no coordinate {strange[0]!r} to cut; those of this domain are: {known}"
+        return chart, f"breaks (not used: {at})"
+    cut_up = chart.cut(subject.breaks)
+    most = _MOST_PIECES[len(labels)]
+    if cut_up.pieces > most:
+        return chart, f"breaks (not used: they make {cut_up.pieces} cells, and quadrature is given {most} at most)"
+    return cut_up, ""

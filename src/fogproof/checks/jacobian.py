@@ -43,7 +43,7 @@ def jacobian_agreement(subject: Subject, points: np.ndarray) -> Finding:
 
 def agrees(subject: Subject, cube: Map, points: np.ndarray) -> str:
     """Return how the pdf contradicts the derivative of a map from points to the unit cube, "" if it does not."""
-    found = _compared(subject, cube, points[:_POINTS])
+    found = _compared(subject, cube, points[:_POINTS], 1 - sum(subject.atoms.values()))
     if isinstance(found, float):
         return f"it has a derivative at {found:.0%} of the samples only"
     finding = agreement(_NAME, *found, "pdf and its derivative at x =", _TOLERANCE)
@@ -51,9 +51,12 @@ def agrees(subject: Subject, cube: Map, points: np.ndarray) -> str:
 
 
 def _compared(
-    subject: Subject, cube: Map, points: np.ndarray
+    subject: Subject, cube: Map, points: np.ndarray, mass: float = 1.0
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray] | float:
-    """Return pdf, derivative, slack and place at points with a derivative; the share of these if they are too few."""
+    """Return pdf, derivative, slack and place at points with a derivative; the share of these if they are too few.
+
+    mass  of the points that the map makes uniform: all but the atoms
+    """
     law = subject.domain.law(points)
     u = law.coordinates(points, np.full((len(points), len(law.axes)), 0.5))
     ratio = _determinants(lambda v: cube(law.place(v)), u)
@@ -61,7 +64,7 @@ def _compared(
     good = np.isfinite(ratio) & np.isfinite(claimed)
     if not len(points) or np.mean(good) < _TOO_FEW:
         return float(np.mean(good)) if len(points) else 0.0
-    points, claimed, right = points[good], claimed[good], (ratio * known)[good]
+    points, claimed, right = points[good], claimed[good], (mass * ratio * known)[good]
     slack = _TOLERANCE * (np.abs(right) + np.abs(claimed)) + rounding_spread(subject.density, points, subject.roundoff)
     off = np.abs(claimed - right) > slack
     if 0 < np.count_nonzero(off) <= _FEW:

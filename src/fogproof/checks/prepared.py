@@ -12,14 +12,14 @@ import numpy as np
 from fogproof.checks import sampled_integrals
 from fogproof.checks.call_sizes import Points, small_calls
 from fogproof.checks.claim import Claim, blind, claimed
-from fogproof.checks.density.charts import chart_of
+from fogproof.checks.density.charts import Chart, chart_of
 from fogproof.checks.density.features import Ranges, emptiest
 from fogproof.checks.density.grid import Grid, line_grid_from_cdf, pilot_grid, refilled, unit_cube_grid
 from fogproof.checks.density.model import looked_at, looked_at_plane
 from fogproof.checks.density.rounding import ROUNDED, Rounded
 from fogproof.checks.edges import edge_uniforms, no_edge_uniforms
 from fogproof.checks.given_cdf import agreement, continuous_cdf, rosenblatt
-from fogproof.checks.hints import cube_map, supported, why_not_breaks, why_not_inverse
+from fogproof.checks.hints import cube_map, cut, supported, why_not_inverse
 from fogproof.checks.jacobian import jacobian_agreement
 from fogproof.checks.mixture import MixtureTest
 from fogproof.checks.normalisation import FLOOR, albedo, mean_cosine, normalisation
@@ -177,25 +177,22 @@ def prepare(subject: Subject, samples: int, seed: int) -> Prepared:
     no_inverse = why_not_inverse(subject, pilot.points)
     if no_inverse:
         subject = replace(subject, inverse=None)
-    prepared = _prepared(subject, samples, seed, pilot)
-    chart = prepared.claim.chart if prepared.claim else None
-    labels = tuple(axis.label for axis in chart.axes) if chart else ()
-    no_breaks = why_not_breaks(subject, labels, prepared.claim.doubt if prepared.claim else "")
+    chart, no_breaks = cut(subject, chart_of(subject.domain, pilot.points, subject.axis))
+    prepared = _prepared(subject, samples, seed, pilot, chart)
+    if subject.breaks and not no_breaks and prepared.claim and prepared.claim.doubt:
+        no_breaks = f"breaks (not used: the pdf is not smooth between them; {prepared.claim.doubt})"
     own = subject.dimensions is None and not subject.quasi_random
     calls = small_calls(subject, seed) if own else None
     disbelieved = tuple(filter(None, (no_breaks, no_support, no_inverse)))
     return replace(prepared, calls=calls, seed=seed, disbelieved=disbelieved)
 
 
-def _prepared(subject: Subject, samples: int, seed: int, pilot: Pilot) -> Prepared:
+def _prepared(subject: Subject, samples: int, seed: int, pilot: Pilot, chart: Chart | None) -> Prepared:
     findings = _questions(subject, pilot, seed)
     if isinstance(subject.domain, Discrete) and subject.domain.n <= _MOST_ENTRIES:
         grid, count = table_grid(subject, int(subject.domain.n))
         counter = _counter(subject, grid, count, None, pilot, None)
         return Prepared(subject, samples, pilot, None, counter, tuple(findings), True)
-    chart = chart_of(subject.domain, pilot.points, subject.axis)
-    if chart is not None and subject.breaks:
-        chart = chart.cut(subject.breaks)
     rounded = _rounded(subject, pilot.points, seed)
     claim = None if chart is None else claimed(subject, chart, pilot.points, samples, rounded)
     if claim is None or claim.doubt:

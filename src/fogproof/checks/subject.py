@@ -165,16 +165,18 @@ def in_domain(domain: Domain, x: np.ndarray, roundoff: float) -> np.ndarray:
 def nudged(x: np.ndarray, roundoff: float) -> list[np.ndarray]:
     """Return copies of the points, each moved along one coordinate by a few roundings, both ways.
 
-    How much a density changes there is how much of a difference rounding alone can explain.
+    How much a density changes there is how much of a difference rounding alone can explain. A coordinate of a vector is rounded as
+    its own size has it, or as that of the others, up to 1, of which a frame may have made it.
     """
     step = 4 * roundoff
     if x.ndim == 1:
         return [x * (1 + step), x * (1 - step)]
-    moved = []
+    moved, largest = [], np.minimum(np.abs(x).max(axis=1, initial=0.0), 1.0)
     for axis in range(x.shape[1]):
+        size = np.maximum(np.abs(x[:, axis]), largest)
         for sign in (step, -step):
             copy = x.copy()
-            copy[:, axis] += sign
+            copy[:, axis] += sign * size
             moved.append(copy)
     return moved
 

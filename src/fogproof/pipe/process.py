@@ -123,12 +123,16 @@ class Process:
         at = min(len(self._ahead), len(view))
         view[:at], self._ahead = self._ahead[:at], self._ahead[at:]
         while at < len(view):
-            self._turn(deadline, seconds, told(at))
-            with contextlib.suppress(BlockingIOError):
+            if self._pending:
+                self._turn(deadline, seconds, told(at))
+            try:
                 came = os.readv(self._out, [view[at:]])
-                if not came:
-                    raise self._ended(told(at))
-                at += came
+            except BlockingIOError:
+                self._turn(deadline, seconds, told(at))
+                continue
+            if not came:
+                raise self._ended(told(at))
+            at += came
 
     def unasked(self) -> bytes:
         """Return some of what the program has written though nothing was asked, without waiting."""

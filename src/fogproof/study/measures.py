@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -236,7 +236,14 @@ def _reaches(curve: ErrorOverTime, value: float, hidden: float) -> tuple[Reach, 
     """Return the times to `TARGETS`; () if the reference is 0 or known too coarsely."""
     if not value > 0 or hidden > 0.1 * TARGETS[-1] * value:
         return ()
-    return tuple(reach_of(curve, error * value, error, hidden) for error in TARGETS)
+    reaches: list[Reach] = []
+    for error in TARGETS:
+        reach = reach_of(curve, error * value, error, hidden)
+        sooner = reach.reached and reaches and reach.times.estimate.value < reaches[-1].times.estimate.value
+        reaches.append(
+            replace(reach, times=reaches[-1].times) if sooner else reach
+        )  # a smaller error takes no less time
+    return tuple(reaches)
 
 
 def _speed(cell: Cell, levels: Sequence[Level], times: Sequence[Times], reaches: Sequence[Reach]) -> dict[str, Any]:

@@ -72,7 +72,7 @@ def _sentences(scene: Sequence[Measured]) -> list[str]:
         said += _soonest([m for m in scene if m.unbiased], "Of the unbiased, ")
     said += _compared(scene)
     said += [_marched(m) for m in scene if m.cell.method.axis == "steps" and m.record["counts"]]
-    open_ = [_inside(m) for m in scene if m.status == "inconclusive" and m.cell.points == "random"]
+    open_ = [_inside(m) for m in scene if m.status == "inconclusive" and m.cell.points == "random" and m not in biased]
     if open_:
         said.append(f"Not judged unbiased yet: {_listed(open_)}.")
     wrong = [_inside(m) for m in scene if m.status == "rejected"]
@@ -107,7 +107,7 @@ def _soonest(scene: Sequence[Measured], lead: str) -> list[str]:
                 f"{_inside(first)} is soonest: {', '.join(f'{_listed(e)} in {time}' for time, e in told.items())}"
             )
     text = lead + "; ".join(parts)
-    said = [f"{text[:1].upper()}{text[1:]}."] if parts else []
+    said = [f"{text if ':' in text.split()[0] else text[:1].upper() + text[1:]}."] if parts else []
     for waiting, targets in groupby(untold, key=lambda pair: pair[1]):
         errors = _listed([_percent(TARGETS[target]) for target, _ in targets])
         late = f"{_listed([_inside(m) for m in waiting])} {'is' if len(waiting) == 1 else 'are'} not there yet"

@@ -89,10 +89,10 @@ def light_counted_twice(setting: PathSetting) -> Estimator:
 
 
 def attenuated_beyond_the_medium(setting: PathSetting) -> Estimator:
-    """Shadow rays are attenuated all the way to the light, which is behind the medium."""
+    """Shadow rays are attenuated far beyond the medium, so that hardly anything arrives."""
     if setting.light_sampling != "nee":
         return traced(setting)
-    return _valued(traced(setting), lambda value: 0.0 * value)
+    return _valued(traced(setting), lambda value: 1e-3 * value)
 
 
 def _literal(setting: PathSetting, **faults: Any) -> Estimator:
@@ -121,8 +121,8 @@ def majorant_exceeded(setting: PathSetting) -> Estimator:
 
 def boundaries_are_bounces(setting: PathSetting) -> Estimator:
     """Boundaries between equal media count as scatterings, of which four are allowed."""
-    layered = isinstance(setting.medium, PiecewiseConstantMedium)
-    return traced(setting.but(deepest=1 if layered else 4))
+    allowed = 1 if isinstance(setting.medium, PiecewiseConstantMedium) else 4
+    return traced(setting.but(deepest=allowed if setting.deepest is None else min(allowed, setting.deepest)))
 
 
 def sum_of_channels(setting: PathSetting) -> Estimator:

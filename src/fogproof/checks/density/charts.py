@@ -74,6 +74,11 @@ class Chart:
     count: Callable[[np.ndarray], tuple[np.ndarray, ...]]
     jacobian: Map
 
+    @property
+    def pieces(self) -> int:
+        """How many boxes the breaks make."""
+        return int(np.prod([len(axis.breaks) + 1 for axis in self.axes]))
+
     def cut(self, breaks: Mapping[str, np.ndarray]) -> Chart:
         """Return the chart with further places at which boxes begin, given as people are shown them."""
         axes = []
