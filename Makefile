@@ -41,6 +41,13 @@ field-bugs: $(VENV)/.installed-test  ## bugs that shipped elsewhere, planted: re
 repeat: $(VENV)/.installed-test  ## 20 runs of the catalogue with fresh seeds: no false alarm
 	$(BIN)/python tools/repeat_verify.py
 
+.PHONY: images
+images: $(VENV)/.installed-test  ## comparisons of images: false alarms, planted errors, size, broken files; an hour
+	$(BIN)/python tools/image_promises.py planted
+	$(BIN)/python tools/image_promises.py fuzz 2000
+	$(BIN)/python tools/image_promises.py size
+	$(BIN)/python tools/image_promises.py false-alarms 1000
+
 families: $(VENV)/.installed-test  ## errors in a corner of a family's parameters: found and shrunk; right families: none rejected
 	$(BIN)/python tools/families.py
 

@@ -12,8 +12,8 @@ from fogproof.scene import ImageScene
 from fogproof.scene.kinds import given
 
 TOLERANCE = 1e-8
-MOST = 64
-"""Evaluations a pixel that quadrature may take where an image is not smooth, and a million more."""
+MOST, SPARE = 32, {"single": 1 << 16, "multiple": 1 << 14, "ambient": 1 << 19, "none": 1 << 19}
+"""Evaluations that quadrature may take where an image is not smooth: so many a pixel, and some more by the cost of a ray."""
 
 
 @quantity(
@@ -52,7 +52,7 @@ def image(scene: ImageScene) -> Reference:
             camera.film.window,
             channels,
             TOLERANCE,
-            MOST * rows * columns + 1_000_000,
+            MOST * rows * columns + SPARE[scene.scattering],
         )
         value, error = found.value, found.error
     if scene.channels is None:

@@ -69,7 +69,7 @@ def pixel_means(
         fine, off, more = _cut(evaluate, columns + x0, rows + y0, channels, tolerance, floor, most)
         mean[rows, columns], error[rows, columns] = fine, off
         spent += more
-    return Means(mean, error, spent)
+    return Means(np.ascontiguousarray(mean), np.ascontiguousarray(error), spent)
 
 
 def _centres(evaluate: Evaluate, window: tuple[int, int, int, int], channels: int) -> tuple[np.ndarray, np.ndarray]:

@@ -35,6 +35,7 @@ from fogproof.scene.surfaces import *  # noqa: F403
 if TYPE_CHECKING:
     from fogproof.checks import *  # noqa: F403
     from fogproof.gradient_check import check_gradient
+    from fogproof.images.compare import compare_image, compare_pictures
     from fogproof.relation_check import check_relations
     from fogproof.runs import Run
     from fogproof.scene.files import read_image_scene, read_scene
@@ -63,6 +64,8 @@ __all__ = [
     "UnsupportedError",
     "check_gradient",
     "check_relations",
+    "compare_image",
+    "compare_pictures",
     "estimator_for",
     "read_image_scene",
     "read_scene",
@@ -81,6 +84,8 @@ _LAZY = {
     "check_gradient": "fogproof.gradient_check",
     "check_relations": "fogproof.relation_check",
     "Run": "fogproof.runs",
+    "compare_image": "fogproof.images.compare",
+    "compare_pictures": "fogproof.images.compare",
     "estimator_for": "fogproof.scene_estimator",
     "read_image_scene": "fogproof.scene.files",
     "read_scene": "fogproof.scene.files",

@@ -12,8 +12,8 @@ from fogproof.errors import FogproofError
 from fogproof.images.formats import format_of
 from fogproof.scene.files import read_image_scene
 
-LAMP = Path(__file__).parents[2] / "scenes" / "images" / "lamp-in-fog.toml"
-SMALL = LAMP.read_text().replace("width = 64, height = 48", "width = 6, height = 4")
+LAMP = Path(__file__).parents[2] / "scenes" / "images" / "lamp-inside-forward.toml"
+SMALL = LAMP.read_text().replace("width = 48, height = 36", "width = 6, height = 4")
 
 
 @pytest.fixture
@@ -70,3 +70,25 @@ def test_json_is_a_scene_too(small, tmp_path):
     path = tmp_path / "a.json"
     path.write_text(json.dumps(tomllib.loads(SMALL)))
     assert image(read_image_scene(path)).value.tolist() == image(read_image_scene(small)).value.tolist()
+
+
+SCENES = sorted(LAMP.parent.glob("*.toml"))
+QUICK = ("absorbing-slab", "ambient-fog", "box", "camera-inside", "emissive-fog", "sun", "white-furnace")
+
+
+def test_every_scene_says_what_it_is_for_and_has_its_reference():
+    assert len(SCENES) >= 20
+    for path in SCENES:
+        scene = read_image_scene(path)
+        assert len(scene.purpose) > 20
+        found = format_of("a.exr").read(path.parent / "references" / f"{path.stem}.exr")
+        assert all(pixels.shape == scene.camera.film.shape and np.isfinite(pixels).all() for pixels in found.values())
+        assert len(found) == 2 * (scene.channels or 1)
+
+
+@pytest.mark.parametrize("name", QUICK)
+def test_references_are_what_the_oracle_says(name):
+    path = LAMP.parent / f"{name}.toml"
+    wanted = image(read_image_scene(path))
+    found = format_of("a.exr").read(path.parent / "references" / f"{name}.exr")
+    assert (np.abs(found["Y"] - wanted.value) <= found["error.Y"] + wanted.error + 1e-6 * wanted.value).all()

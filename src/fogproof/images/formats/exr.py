@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +26,8 @@ def read(path: Path) -> Channels:
             for part in exr.File(file, header_only=True).parts:
                 _check(path, part)
             file.seek(0)
-            parts = exr.File(file, separate_channels=True, num_threads=1).parts
+            with _stdout_kept():
+                parts = exr.File(file, separate_channels=True, num_threads=1).parts
             found: Channels = {}
             for part in parts:
                 for name, channel in part.channels.items():
@@ -35,10 +39,27 @@ def read(path: Path) -> Channels:
             reason = str(error).splitlines()[0] if str(error) else type(error).__name__
             raise InvalidInputError(f"{path}: is a broken or truncated OpenEXR file: {reason}", str(path)) from None
     if not found:
-        raise InvalidInputError(f"{path}: has no channels", str(path))
+        raise InvalidInputError(f"{path}: is broken or truncated: no channel of it can be read", str(path))
     if len({pixels.shape for pixels in found.values()}) > 1:
         raise InvalidInputError(f"{path}: its channels or parts differ in size", str(path))
     return found
+
+
+@contextlib.contextmanager
+def _stdout_kept() -> Iterator[None]:
+    """Send to stderr what the library prints on stdout about broken files: stdout is for programs."""
+    try:
+        kept = os.dup(1)
+    except OSError:  # there is no stdout
+        yield
+        return
+    try:
+        with contextlib.suppress(OSError):
+            os.dup2(2, 1)
+        yield
+    finally:
+        os.dup2(kept, 1)
+        os.close(kept)
 
 
 def _check(path: Path, part: Any) -> None:

@@ -1,0 +1,41 @@
+"""`fogproof export`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from fogproof.cli.terminal import say
+
+
+@click.command("export")
+@click.argument("scene", metavar="SCENE.toml")
+@click.option(
+    "--to", "target", required=True, type=click.Choice(["mitsuba", "cycles", "json"]), help="For which renderer."
+)
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path, dir_okay=False), help="Write here instead of to stdout."
+)
+def command(scene: str, target: str, output: Path | None) -> int:
+    """Write a scene for another renderer: a script that its own Python runs as `python SCRIPT OUT.exr`, or plain JSON.
+
+    Units and conventions are translated in the script, each with a word on it.
+
+    \b
+    Example:  fogproof export scenes/images/sun.toml --to mitsuba -o sun.py && python sun.py sun.exr --samples 256
+    """
+    import json
+
+    from fogproof.renderers.table import script_of
+    from fogproof.reports.files import write_file
+    from fogproof.scene.files import read_image_scene
+    from fogproof.scene.to_json import to_json
+
+    read = read_image_scene(scene)
+    text = json.dumps(to_json(read), indent=1) + "\n" if target == "json" else script_of(target, read)
+    if output is None:
+        click.echo(text, nl=False)
+    else:
+        say(f"{write_file(output, text)}", err=True)
+    return 0

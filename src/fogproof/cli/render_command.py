@@ -1,0 +1,85 @@
+"""`fogproof render`."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import click
+
+from fogproof.cli.signals import code_of, stoppable
+from fogproof.cli.terminal import say
+from fogproof.images.compare import ALPHA, TOLERANCE
+from fogproof.images.renders import Wanted, render_scenes, write_page
+from fogproof.renderers.table import renderer_of
+
+
+@click.command("render")
+@click.argument("scenes", nargs=-1, required=True, metavar="SCENE.toml...", type=click.Path(path_type=Path))
+@click.option(
+    "--with",
+    "renderer",
+    required=True,
+    metavar="RENDERER",
+    help="mitsuba, cycles, or a command with {scene} and {out}.",
+)
+@click.option(
+    "-o", "--output", "folder", required=True, metavar="DIR", type=click.Path(path_type=Path, file_okay=False),
+    help="Images, records and the page land here; a run that was stopped goes on.",
+)  # fmt: skip
+@click.option("--samples", type=click.IntRange(min=1), default=256, show_default=True, help="Samples a pixel.")
+@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the renderer.")
+@click.option("--python", default=sys.executable, help="Interpreter that has the renderer; this one by default.")
+@click.option(
+    "--tolerance", type=float, default=TOLERANCE, show_default=True, help="Relative error that does not matter."
+)
+@click.option("--alpha", type=float, default=ALPHA, show_default=True, help="False-alarm probability of each scene.")
+@click.option("--time-limit", "seconds", type=float, metavar="SECONDS", help="Longest a render may take.")
+@click.option("--force", is_flag=True, help="Replace a page in DIR that fogproof did not write.")
+@click.option("--json", "as_json", is_flag=True, help="Print rows as JSON, one a line.")
+def command(
+    scenes: tuple[Path, ...],
+    renderer: str,
+    folder: Path,
+    samples: int,
+    seed: int,
+    python: str,
+    tolerance: float,
+    alpha: float,
+    seconds: float | None,
+    force: bool,
+    as_json: bool,
+) -> int:
+    """Render scenes with another program, compare each with the oracle, and write one page.
+
+    Exit code: 0 nothing rejected, 1 something rejected, 3 something inconclusive or not rendered, or an error.
+
+    \b
+    Example:  fogproof render scenes/images/*.toml --with mitsuba -o build/mitsuba
+    """
+    from fogproof.reports import prepare_folder
+
+    wanted = Wanted(renderer_of(renderer), samples, seed, tolerance, alpha, python, seconds)
+    prepare_folder(folder, force=force)
+    rows: list[dict[str, Any]] = []
+    stopped = 0
+    width = max(len(path.stem) for path in scenes)
+    try:
+        with stoppable():
+            for row in render_scenes(scenes, wanted, folder):
+                rows.append(row)
+                say(json.dumps(row) if as_json else _line(row, width))
+                write_page(rows, wanted, folder)
+    except KeyboardInterrupt as stop:
+        stopped = code_of(stop)
+        say(f"stopped after {len(rows)} of {len(scenes)} scenes; these are kept", err=True)
+    say(f"report: {write_page(rows, wanted, folder)}", err=True)
+    outcomes = {row["outcome"] for row in rows}
+    return stopped or (1 if "rejected" in outcomes else 0 if outcomes <= {"not rejected"} else 3)
+
+
+def _line(row: dict[str, Any], width: int) -> str:
+    told = f"{row['scene']:{width}}  {row['outcome']:12}  {row['ratio']:38}  {row['resolution']:8}  {row['seconds']:>6}"
+    return f"{told}  {row['reason']}".rstrip()

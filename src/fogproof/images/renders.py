@@ -1,0 +1,139 @@
+"""Scenes rendered by somebody's program and compared, one after the other, resumable."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import subprocess
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from fogproof.errors import FogproofError, InvalidInputError
+from fogproof.images.compare import compare_image
+from fogproof.images.report import write_comparison
+from fogproof.renderers.table import Renderer, command_of
+from fogproof.reports.files import write_file
+from fogproof.reports.pages.images import write_renders_page
+from fogproof.scene.files import read_image_scene
+from fogproof.scene.to_json import to_json
+
+LAST = 300
+"""Characters of a renderer's last words that are kept."""
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """How scenes are rendered and compared.
+
+    seconds  longest a render may take, or None
+    python   the interpreter that has the renderer
+    """
+
+    renderer: Renderer
+    samples: int
+    seed: int
+    tolerance: float
+    alpha: float
+    python: str
+    seconds: float | None = None
+
+
+def render_scenes(scenes: Sequence[Path], wanted: Wanted, folder: Path) -> Iterator[dict[str, Any]]:
+    """Render and compare each scene, and yield its row as soon as it is known; what was done before is taken as it is.
+
+    A row says "not rejected", "rejected", "inconclusive", "not rendered" (the renderer has no such thing) or "error".
+    """
+    names = [path.stem for path in scenes]
+    if len(set(names)) < len(names):
+        twice = next(name for name in names if names.count(name) > 1)
+        raise InvalidInputError(f"two scenes have the name {twice}: their images would be one", twice)
+    for path in scenes:
+        place = folder / path.stem
+        try:
+            scene = json.dumps(to_json(read_image_scene(path)), indent=1)
+        except FogproofError as error:
+            yield _row(path.stem, "error", str(error))
+            continue
+        key = _key(scene, wanted)
+        row = _before(place, key)
+        if row is None:
+            started = time.perf_counter()
+            row = _render(path, scene, wanted, place)
+            row["seconds"] = f"{time.perf_counter() - started:.1f}"
+            write_file(place / "row.json", json.dumps({"key": key, "row": row}, indent=1))
+        yield row
+
+
+def write_page(rows: Sequence[dict[str, Any]], wanted: Wanted, folder: Path) -> Path:
+    """Write the page of all rows so far and their record."""
+    write_file(folder / "results.json", json.dumps({"renderer": wanted.renderer.name, "rows": list(rows)}, indent=1))
+    return write_renders_page(rows, wanted.renderer.name, folder)
+
+
+def _key(scene: str, wanted: Wanted) -> str:
+    """Return what a row depends on, as a digest; a script that the command names is part of it."""
+    words = command_of(wanted.renderer, Path("scene"), Path("out"), wanted.samples, wanted.seed, wanted.python)
+    code = [Path(word).read_bytes() for word in words if word.endswith(".py") and Path(word).is_file()]
+    parts = [scene.encode(), json.dumps([words, wanted.tolerance, wanted.alpha]).encode(), *code]
+    return hashlib.blake2b(b"\0".join(parts), digest_size=16).hexdigest()
+
+
+def _before(place: Path, key: str) -> dict[str, Any] | None:
+    try:
+        kept = json.loads((place / "row.json").read_text(encoding="utf-8"))
+        row: dict[str, Any] = kept["row"]
+        return row if kept["key"] == key and row["outcome"] != "error" else None  # what went wrong may go well now
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+
+
+def _render(path: Path, scene: str, wanted: Wanted, place: Path) -> dict[str, Any]:
+    source, out = write_file(place / "scene.json", scene), place / "image.exr"
+    for old in (out, out.with_name(f"{out.name}.npy")):
+        old.unlink(missing_ok=True)
+    command = command_of(wanted.renderer, source, out, wanted.samples, wanted.seed, wanted.python)
+    try:
+        ran = subprocess.run(
+            command, capture_output=True, text=True, errors="replace", timeout=wanted.seconds, check=False
+        )
+    except subprocess.TimeoutExpired:
+        return _row(path.stem, "error", f"rendering took longer than {wanted.seconds:g} s")
+    except OSError as error:
+        return _row(path.stem, "error", f"cannot run {command[0]}: {error.strerror or error}")
+    if ran.returncode:
+        words = (ran.stderr.strip().splitlines() or [""])[-1][-LAST:]
+        refused = (
+            ran.returncode == 1 and not words.startswith(("Traceback", " ")) and "Error" not in words.split(":")[0]
+        )
+        if "No module named" in words and wanted.renderer.install:
+            return _row(path.stem, "error", f"{wanted.renderer.name} is not installed; {wanted.renderer.install}")
+        return _row(path.stem, "not rendered" if refused else "error", words or f"exit code {ran.returncode}")
+    beside = out.with_name(f"{out.name}.npy")  # a renderer that writes arrays may be given {out}.npy
+    out = beside if beside.exists() and not out.exists() else out
+    if not out.exists():
+        return _row(path.stem, "error", f"the renderer ended well and wrote no {out.name}")
+    try:
+        done = compare_image([out], read_image_scene(source), tolerance=wanted.tolerance, alpha=wanted.alpha)
+        page = write_comparison(done, place)
+    except FogproofError as error:
+        return _row(path.stem, "error", str(error))
+    verdict = done.verdict
+    resolution = "" if verdict.resolution is None else f"{verdict.resolution.value:.2g}"
+    row = _row(path.stem, verdict.outcome, f"{verdict.cause}: {verdict.diagnosis}" if verdict.cause else "")
+    told = [f"{ratio:.6g} ({interval.low:.6g} to {interval.high:.6g})" for _, ratio, interval in done.ratios]
+    return row | {"page": f"{path.stem}/{page.name}", "ratio": ", ".join(told), "resolution": resolution}
+
+
+def _row(scene: str, outcome: str, reason: str) -> dict[str, Any]:
+    return {
+        "scene": scene,
+        "outcome": outcome,
+        "reason": reason,
+        "page": "",
+        "ratio": "",
+        "resolution": "",
+        "seconds": "",
+    }

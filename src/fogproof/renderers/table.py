@@ -1,0 +1,78 @@
+"""The renderers there are, how their scripts are exported, and the commands that run them."""
+
+from __future__ import annotations
+
+import json
+import shlex
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from fogproof.errors import InvalidInputError
+from fogproof.scene import ImageScene
+from fogproof.scene.to_json import to_json
+
+HERE = Path(__file__).parent
+READING = """    with open(given.scene, encoding="utf-8") as file:
+        scene = json.load(file)
+"""
+"""What a script does to read its scene; an exported one has it inside."""
+
+
+@dataclass(frozen=True)
+class Renderer:
+    """A renderer: the command that renders, with {python}, {scene}, {out}, {samples} and {seed} in it.
+
+    install  the line that installs it
+    """
+
+    name: str
+    command: str
+    install: str = ""
+
+
+RENDERERS = {
+    "mitsuba": Renderer(
+        "mitsuba",
+        f"{{python}} {shlex.quote(str(HERE / 'render_with_mitsuba.py'))} {{scene}} {{out}} --samples {{samples}} --seed {{seed}}",
+        "python -m pip install 'fogproof[mitsuba]'",
+    ),
+    "cycles": Renderer(
+        "cycles",
+        f"{{python}} {shlex.quote(str(HERE / 'render_with_cycles.py'))} {{scene}} {{out}} --samples {{samples}} --seed {{seed}}",
+        "python3.11 -m venv cycles && cycles/bin/python -m pip install bpy==5.0.1 'numpy<2', then --python cycles/bin/python",
+    ),
+}
+
+
+def renderer_of(name_or_command: str) -> Renderer:
+    """Return a renderer by its name, or one of the user's own by its command."""
+    if name_or_command in RENDERERS:
+        return RENDERERS[name_or_command]
+    if "{scene}" not in name_or_command or "{out}" not in name_or_command:
+        known = ", ".join(RENDERERS)
+        what = f"--with {name_or_command!r}: is none of {known}, and no command with {{scene}} and {{out}} in it"
+        raise InvalidInputError(what, "with")
+    return Renderer(Path(shlex.split(name_or_command)[0]).name, name_or_command)
+
+
+def command_of(
+    renderer: Renderer, scene: Path, out: Path, samples: int, seed: int, python: str = sys.executable
+) -> list[str]:
+    """Return the words of the command that renders a scene."""
+    values = {"python": python, "scene": str(scene), "out": str(out), "samples": str(samples), "seed": str(seed)}
+    words = []
+    for word in shlex.split(renderer.command):
+        for key, value in values.items():
+            word = word.replace(f"{{{key}}}", value)
+        words.append(word)
+    return words
+
+
+def script_of(name: str, scene: ImageScene) -> str:
+    """Return one file that the renderer's own interpreter runs: `python FILE OUT.exr`; the scene stands in it."""
+    body = (HERE / f"render_with_{name}.py").read_text(encoding="utf-8")
+    table = json.dumps(to_json(scene), indent=1).replace("'", "\\u0027")
+    given = body.replace('    parser.add_argument("scene")\n', "").replace(READING, "    scene = json.loads(SCENE)\n")
+    head, mark, rest = given.partition("from typing import Any\n")
+    return f"{head}{mark}\nSCENE = r'''{table}'''\n{rest}"
