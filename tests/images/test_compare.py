@@ -231,7 +231,7 @@ def test_renders_that_are_all_the_same_have_no_noise(compared, truth):
 
 def test_pixels_that_share_random_numbers_are_recognised(compared, truth, rng):
     renders = [
-        truth.value * (1 + 0.1 * rng.standard_normal()) * (1 + 0.01 * rng.standard_normal((48, 64))) for _ in range(10)
+        truth.value * (1 + 0.1 * rng.standard_normal()) * (1 + 0.01 * rng.standard_normal((48, 64))) for _ in range(24)
     ]
     done = compared(renders)
     assert done.dependence.kind == "shared"

@@ -98,7 +98,9 @@ def test_an_image_is_the_mean_of_the_radiance_of_its_rays():
     ).value
     mean = float(weights @ seen @ weights / 4)
     assert abs(found.value[4, 1] - mean) <= found.error[4, 1] + 1e-12
-    assert (found.error <= 1e-6 * found.value).all()
+    relative = found.error / found.value
+    assert np.median(relative) < 1e-8
+    assert relative.max() < 1e-4  # the pixel of the lamp has a pole in it
 
 
 def test_a_crop_is_a_part_of_the_whole():
