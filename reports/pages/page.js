@@ -7,7 +7,7 @@
   let texts; // of every section, gathered when a word is first asked for
   const gather = () => rows.map((row, i) => {
     const section = sections[i] ?? row;
-    const drawings = new Set(section.querySelectorAll("svg"));
+    const drawings = new Set(section.querySelectorAll("svg, .how")); // nor what is said of every figure alike
     const walker = document.createTreeWalker(section, NodeFilter.SHOW_ELEMENT | NodeFilter.SHOW_TEXT, (node) =>
       drawings.has(node) ? NodeFilter.FILTER_REJECT : NodeFilter.FILTER_ACCEPT);
     let text = "";
