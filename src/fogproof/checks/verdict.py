@@ -53,7 +53,7 @@ class Resolution:
 
     def __str__(self) -> str:
         sure = f" with probability {1 - self.miss:g}" if self.miss else ""
-        article = "an" if self.kind[0] in "aeiou" else "a"
+        article = "an" if self.kind.startswith(tuple("aeiou")) else "a"
         share = f" ({self.relative:.2g} of it)" if self.of and self.relative is not None else ""
         return f"{article} {self.kind} above {self.value:.2g}{share} would have been caught{sure}"
 

@@ -75,7 +75,7 @@ def _hand_out(study: Study, cells: Sequence[Cell], batch: Batch, pool: Workers, 
     reference = float(cells[batch.cell].reference.value)
     try:
         future = pool.executor.submit(draw, study.text, study.folder, batch, reference)
-    except BrokenExecutor:  # it broke while nobody was looking
+    except (BrokenExecutor, EOFError, ConnectionError):  # it, or what forks its workers, broke while nobody was looking
         pool.restart()
         future = pool.executor.submit(draw, study.text, study.folder, batch, reference)
     work.running[future] = batch
