@@ -14,7 +14,6 @@ from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.analytic.declaration import quantity
 from fogproof.analytic.multiple.scattering_arguments import checked_count
 from fogproof.contracts import Reference
-from fogproof.errors import InvalidValueError
 from fogproof.scene.arrays import FloatArray
 from fogproof.validate import as_float_array, require
 
@@ -81,12 +80,10 @@ def _sums(n: int, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def _checked(flights: Any, g: Any, mean_free_path: Any) -> tuple[int, np.ndarray, np.ndarray]:
     n, g, length = (
-        checked_count("flights", flights),
+        checked_count("flights", flights, MOST_FLIGHTS),
         as_float_array("g", g),
         as_float_array("mean_free_path", mean_free_path),
     )
-    if n > MOST_FLIGHTS:
-        raise InvalidValueError("flights", "must be at most 2^53", n, "beyond, counts are no float64 numbers")
     require("g", g, np.abs(g) <= 1, "must lie in [-1, 1]", "it is the mean cosine of the phase function")
     require("mean_free_path", length, np.isfinite(length) & (length > 0), "must be finite and > 0 [m]")
     g, length = np.broadcast_arrays(g, length)

@@ -45,8 +45,9 @@ def rod_reflectance(albedo: FloatArray, length: FloatArray, g: FloatArray = 0.0)
     Relative error: below (16 + 4 k L) eps.
     """
     c, L, g = _checked(albedo, length, g)
-    value = _reflectance(c, 1 - c, L, g)
-    return Reference(value, 16 * EPS * value + TINY, METHOD, SOURCE)
+    with np.errstate(under="ignore"):
+        value = _reflectance(c, 1 - c, L, g)
+        return Reference(value, 16 * EPS * value + TINY, METHOD, SOURCE)
 
 
 @quantity(
@@ -58,9 +59,10 @@ def rod_reflectance(albedo: FloatArray, length: FloatArray, g: FloatArray = 0.0)
 def rod_transmittance(albedo: FloatArray, length: FloatArray, g: FloatArray = 0.0) -> Reference:
     """Return what passes a rod, scattered or not; arguments and error as in `rod_reflectance`."""
     c, L, g = _checked(albedo, length, g)
-    value = _transmittance(c, 1 - c, L, g)
-    depth = np.sqrt((1 - c) * _kept(c, 1 - c, g)) * L
-    return Reference(value, (16 + 4 * depth) * EPS * value + 2 * TINY, METHOD, SOURCE)
+    with np.errstate(under="ignore"):
+        value = _transmittance(c, 1 - c, L, g)
+        depth = np.sqrt((1 - c) * _kept(c, 1 - c, g)) * L
+        return Reference(value, (16 + 4 * depth) * EPS * value + 2 * TINY, METHOD, SOURCE)
 
 
 @quantity(

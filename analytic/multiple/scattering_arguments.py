@@ -48,11 +48,11 @@ def checked_length(name: str, value: Any) -> np.ndarray:
 
 
 MOST = 10_000
-"""Scatterings or flights asked for at most: as many values, and solutions to find them, have to fit into memory."""
+"""Scattering orders asked for at most: as many values, and solutions to find them, have to fit into memory."""
 
 
-def checked_count(name: str, value: Any) -> int:
-    """Return a whole number in [0, MOST]."""
-    if isinstance(value, bool) or not isinstance(value, int | np.integer) or not 0 <= value <= MOST:
-        raise InvalidValueError(name, f"must be a whole number in [0, {MOST}]", value)
+def checked_count(name: str, value: Any, most: int = MOST) -> int:
+    """Return a whole number in [0, most]."""
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or not 0 <= value <= most:
+        raise InvalidValueError(name, f"must be a whole number in [0, {most}]", value)
     return int(value)

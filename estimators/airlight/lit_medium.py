@@ -117,8 +117,8 @@ class LitMedium:
         mu, distance, irradiance = self._illumination(self.start + t)
         uniform = given(self.medium, ROOM, "uniform")
         if uniform is not None and self.shape == EVERYWHERE and self.shadow_rays == "exact" and not self.occluders:
-            sigma_t = float(uniform(self.medium))
             value = self.albedo * self.extinction.sigma(t) * phase_value(self.phase, mu) * irradiance
+            sigma_t = float(uniform(self.medium))
             return value * np.exp(-sigma_t * distance) if sigma_t > 0 else value, np.ones_like(t)
         x = self.points(t)
         w = towards(self.light, x)

@@ -157,7 +157,8 @@ def chi_square(
     bartlett = 1 + float(np.sum(1 / expected) - 1 / n) / (6 * (cells - 1))
     statistic = float(np.sum(deviances(observed, nearest))) / bartlett
     p = chi_square_above(cells - 1, statistic)
-    blurred = bool(np.any(error > _BLURRED * sigma))
+    # In a few cells of many, doubt costs what the resolution says, and no more.
+    blurred = bool(np.mean((error / sigma) ** 2) > _BLURRED**2)
     hides = math.sqrt(float(np.sum(slack**2 / expected)) / n)
     hidden = statistic == 0 and hides > HIDDEN
     outcome: Outcome = "rejected" if p <= alpha else "inconclusive" if blurred or hidden else "not rejected"
