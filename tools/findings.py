@@ -143,7 +143,7 @@ def masking() -> str:
         )
     return (
         "Integral of the pdf over the share of valid samples, and the ratio of Walter et al.'s rational approximation to the exact"
-        f" masking function (mpmath): {'; '.join(rows)}. With GGX, whose masking function is exact, they agree."
+        f" masking function (mpmath): {'; '.join(rows)}."
     )
 
 

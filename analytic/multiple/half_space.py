@@ -50,7 +50,8 @@ def half_space_reflectance(albedo: FloatArray, mu0: FloatArray) -> Reference:
     """
     c, mu0 = np.broadcast_arrays(checked_albedo(albedo), checked_cosine("mu0", mu0))
     value = _plane_albedo(c, 1 - c, mu0)
-    return Reference(value, RELATIVE_ERROR * value + TINY, METHOD, SOURCE)
+    with np.errstate(under="ignore"):
+        return Reference(value, RELATIVE_ERROR * value + TINY, METHOD, SOURCE)
 
 
 @quantity(

@@ -27,6 +27,7 @@ _SCREENED = 1 << 12  # samples on which all hypotheses are tried first, with a f
 _TRIED = 12  # of them that are fitted closer, on as many samples as show the misfit
 _TELLING, _MOST = 200.0, 1 << 16  # chi-square of the misfit on those samples, and most of them
 _KEPT = 3  # of those that are fitted on all samples
+_STANDS_OUT = 25.0  # of likelihood that a hypothesis gains, where cells alone do not show the misfit
 _EXPLAINS = 0.5  # of the misfit: a hypothesis that explains less is not told
 
 
@@ -84,10 +85,13 @@ def _explained(subject: Subject, samples: int, seed: int) -> Explained | None:
         base = setting.contrast.fit(setting.p(setting.contrast.points))
         if base.left > _PLAIN or n >= samples:
             break
-    if setting is None or base.left < 4 * math.sqrt(2 * base.freedom):
+    if setting is None:
         return None
     best = _best(setting, base, [*_of_domain(setting), *holes.hypotheses(setting)])
     if best is None or best.share < _EXPLAINS:
+        return None
+    # A small smooth misfit hides among many cells, and stands out against the hypothesis that it is.
+    if base.left < 4 * math.sqrt(2 * base.freedom) and best.fit.likelihood - base.likelihood < _STANDS_OUT:
         return None
     large = _setting(subject, min(_SIZES[-1], samples), seed) if best.hypothesis.trials else None
     return best if large is None else _sharpened(large, best)
@@ -110,7 +114,9 @@ def _best(setting: Setting, base: Fit, hypotheses: list[Hypothesis]) -> Explaine
     """Return the hypothesis of the greatest likelihood, parameters paid for by Schwarz's criterion; earlier ones win ties."""
     n = len(setting.contrast.x)
     small = replace(setting, contrast=setting.contrast.part(_SCREENED))
-    middle = replace(setting, contrast=setting.contrast.part(min(max(int(_TELLING * n / base.left), _SCREENED), _MOST)))
+    middle = replace(
+        setting, contrast=setting.contrast.part(min(max(int(_TELLING * n / max(base.left, 1.0)), _SCREENED), _MOST))
+    )
     tried = []
     for order, hypothesis in enumerate(hypotheses):
         values = hypothesis.trials or (0.0,)
@@ -136,7 +142,7 @@ def _best(setting: Setting, base: Fit, hypotheses: list[Hypothesis]) -> Explaine
             error = _error(middle, hypothesis, value, room)
             value, error = _polished(setting, hypothesis, value, error)
         fit = setting.contrast.fit(hypothesis.density(setting, value)(setting.contrast.points))
-        share = 1 - max(fit.left - 2 * math.sqrt(2 * fit.freedom), 0.0) / base.left
+        share = 1 - max(fit.left - 2 * math.sqrt(2 * fit.freedom), 0.0) / max(base.left, 1.0)
         score = fit.likelihood - hypothesis.price(n)
         found.append((score + 1.5 * order / len(hypotheses), order, Explained(hypothesis, value, error, fit, share)))
     return max(found, key=lambda one: one[:2])[2] if found else None
