@@ -2,8 +2,9 @@
 
 Let p interpolate f at the nodes x_j, of which x_0 is one. With w(x) = prod (x - x_j) the remainder is w(x) f[x_0 … x_n, x],
 so that f'(x_0) - p'(x_0) = w'(x_0) f[x_0 … x_n, x_0]. If f is analytic and |f| <= M in the disc of radius R about x_0, a
-divided difference over k + 1 points within a of x_0 is at most M/(R - a)^k (Cauchy). Nothing is guessed: the bound holds
-for every function that keeps to M, and the errors of the values are carried through the sum.
+divided difference over k + 1 points within a of x_0 is at most M/(R - a)^k (Cauchy). So the remainder is bounded for every
+function that keeps to M. The errors of the values are carried through the sum, and are what they are for the values: where
+those are estimated, so is this. That nodes may be asked a few roundings aside is charged by twice the steepest chord.
 """
 
 from __future__ import annotations

@@ -6,11 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from fogproof.checks import Verdict, batch_generator, compare_estimators, fresh_seed
 from fogproof.errors import InvalidValueError, UnsupportedError
-from fogproof.relations import Comparison, PathSetting, RadianceTerm, comparisons
+from fogproof.relations import PathSetting, comparisons
+from fogproof.relations.drawn import drawn
 from fogproof.validate import number
 
 Render = Callable[[PathSetting], Any]
@@ -60,7 +59,7 @@ def check_relations(
     results = []
     for comparison in allowed:
         try:
-            first, second = sides(render, comparison)
+            first, second = drawn(render, comparison.first), drawn(render, comparison.second)
         except UnsupportedError:
             continue
         verdict = compare_estimators(
@@ -73,23 +72,3 @@ def check_relations(
         )
         results.append(RelationVerdict(comparison.name, comparison.isolates, verdict))
     return tuple(results)
-
-
-def sides(render: Render, comparison: Comparison) -> tuple[Callable[..., np.ndarray], Callable[..., np.ndarray]]:
-    """Return the two sides of a comparison as estimators."""
-    return _sum(render, comparison.first), _sum(render, comparison.second)
-
-
-def _sum(render: Render, terms: tuple[RadianceTerm, ...]) -> Callable[..., np.ndarray]:
-    estimators = [render(term.setting) for term in terms]
-    drawn: list[Any] = [getattr(estimator, "draw", estimator) for estimator in estimators]
-
-    def draw(rng: np.random.Generator, n: int) -> np.ndarray:
-        total: Any = 0.0
-        for term, one in zip(terms, drawn, strict=True):
-            found = one(rng, n)
-            value = np.asarray(getattr(found, "value", found))
-            total = total + term.factor * (value if term.channel is None else value[:, term.channel])
-        return np.asarray(total)
-
-    return draw

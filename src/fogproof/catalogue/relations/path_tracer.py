@@ -11,7 +11,8 @@ import numpy as np
 from fogproof.catalogue.cases import Drawn, EstimatorCase, Twin
 from fogproof.catalogue.twins import renderers
 from fogproof.catalogue.twins.renderers import Renderer, traced
-from fogproof.relations import Comparison, PathSetting, RadianceTerm, comparisons
+from fogproof.relations import Comparison, PathSetting, comparisons
+from fogproof.relations.drawn import drawn
 from fogproof.scene import HenyeyGreenstein, Medium, Ray, VoxelGrid
 from fogproof.scene.lights import DirectionalLight, Environment
 from fogproof.scene.shapes import Box, Slab
@@ -44,22 +45,16 @@ IN_A_SLAB = PathSetting(
 
 def _difference(comparison: Comparison, render: Renderer) -> Drawn:
     """Return an estimator of 0: one side less the other."""
-    terms = [(term, term.factor) for term in comparison.first] + [(term, -term.factor) for term in comparison.second]
-    drawn = [(render(term.setting), term, factor) for term, factor in terms]
+    first, second = drawn(render, comparison.first), drawn(render, comparison.second)
 
     def draw(rng: np.random.Generator, n: int) -> np.ndarray:
-        total = np.zeros(n)
-        for estimator, term, factor in drawn:
-            value = np.asarray(getattr(found := estimator.draw(rng, n), "value", found))
-            total += factor * (value if term.channel is None else value[:, term.channel])
-        return total
+        return first(rng, n) - second(rng, n)
 
     return Drawn(draw)
 
 
 def _case(setting: PathSetting, name: str, fault: Callable[[PathSetting], Any]) -> EstimatorCase:
     (comparison,) = (found for found in comparisons(setting) if found.name == name)
-    assert all(isinstance(term, RadianceTerm) for term in comparison.first)
     return EstimatorCase(
         name=f"relations/{name}",
         title=f"The same radiance on both sides of the relation {name}",
