@@ -22,6 +22,10 @@ gallery: $(VENV)/.installed  ## the theory in pictures; the page lands in build/
 test: $(VENV)/.installed-test  ## the project's own tests
 	$(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
+.PHONY: test-fresh
+test-fresh: $(VENV)/.installed-test  ## the same with new seeds: a test that fails now and then has to be mended
+	$(BIN)/python -m pytest --numprocesses auto --dist worksteal --fresh
+
 lint: $(VENV)/.installed-lint  ## ruff, mypy and the import contracts
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
