@@ -114,7 +114,9 @@ def _by_render(picture: RenderedImage, found: Residuals, alpha: float) -> list[F
         means = picture.renders[..., c][:, found.good].mean(axis=1) - base
         allowed = float(np.mean(found.allowed[..., c][found.good]))
         findings.append(
-            mean_test(name, name, Moments.of(means), 0.0, allowed, alpha / channels, known=Known(light=True))
+            mean_test(
+                name, name, Moments.of(means), 0.0, allowed, alpha / channels, known=Known(light=True), uncertain=0.0
+            )
         )
     return findings
 

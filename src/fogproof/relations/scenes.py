@@ -77,15 +77,17 @@ def isotropic(setting: ImageSetting) -> Iterator[Comparison]:
 
 def finer_cells(setting: ImageSetting) -> Iterator[Comparison]:
     """Compare a grid with the same grid cut into eight voxels for each, and with one that has a rim of empty voxels."""
-    grid = setting.medium
+    grid: Any = setting.medium
     if not isinstance(grid, VoxelGrid) or grid.interpolation != "nearest":
         return
     arrays = {name: np.asarray(getattr(grid, name)) for name in ("sigma_t", "albedo", "emission")}
     cells = {name: array for name, array in arrays.items() if array.ndim >= 3}
-    finer = {name: array.repeat(2, 0).repeat(2, 1).repeat(2, 2) for name, array in cells.items()}
+    finer: dict[str, Any] = {name: array.repeat(2, 0).repeat(2, 1).repeat(2, 2) for name, array in cells.items()}
     told = "walks through voxels: corners, faces, the size of the grid"
     yield same("finer-grid", told, setting, setting.but(medium=replace(grid, **finer)))
-    rim = {name: np.pad(array, [(1, 1)] * 3 + [(0, 0)] * (array.ndim - 3)) for name, array in cells.items()}
+    rim: dict[str, Any] = {
+        name: np.pad(array, [(1, 1)] * 3 + [(0, 0)] * (array.ndim - 3)) for name, array in cells.items()
+    }
     size = (np.asarray(grid.upper) - np.asarray(grid.lower)) / grid.sigma_t.shape[:3]
     wider = replace(grid, lower=np.asarray(grid.lower) - size, upper=np.asarray(grid.upper) + size, **rim)
     told = "empty voxels: boundaries of the grid, the way to them, its transform"
@@ -94,7 +96,7 @@ def finer_cells(setting: ImageSetting) -> Iterator[Comparison]:
         yield from _far_voxel(setting, wider)
 
 
-def _far_voxel(setting: ImageSetting, wider: VoxelGrid) -> Iterator[Comparison]:
+def _far_voxel(setting: ImageSetting, wider: Any) -> Iterator[Comparison]:
     """Yield the comparison with a dense voxel in a corner of the empty rim that neither camera nor light looks at."""
     density = np.array(wider.sigma_t)
     size = (np.asarray(wider.upper) - np.asarray(wider.lower)) / density.shape[:3]
@@ -137,7 +139,7 @@ def _in_view(camera: Any, center: np.ndarray, radius: float) -> bool:
         half = np.arctan(camera.half_width * diagonal)
         distance = np.hypot(along, across)
         return bool(distance <= radius or np.arctan2(across, along) - np.arcsin(radius / distance) <= half)
-    return across <= radius + 0.5 * getattr(camera, "width", 0.0) * diagonal
+    return bool(across <= radius + 0.5 * getattr(camera, "width", 0.0) * diagonal)
 
 
 def absorbing(setting: ImageSetting) -> Iterator[Comparison]:

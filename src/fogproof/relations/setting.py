@@ -46,8 +46,9 @@ class PathSetting:
     def alone(self, channel: int) -> PathSetting:
         """Return the grey setting that a channel sees."""
         light = self.light
-        if light is not None and isinstance(strength(light), tuple):
-            light = with_strength(light, strength(light)[channel])
+        value = 0.0 if light is None else strength(light)
+        if light is not None and isinstance(value, tuple):
+            light = with_strength(light, value[channel])
         return replace(self, medium=medium_of_channel(self.medium, channel), light=light)
 
 
@@ -118,9 +119,11 @@ class Comparison:
 
     name      of the relation
     isolates  where to look if it fails
+    same_law  whether both sides have the same law, not only the same mean
     """
 
     name: str
     isolates: str
     first: tuple[RadianceTerm, ...]
     second: tuple[RadianceTerm, ...]
+    same_law: bool = False
