@@ -23,7 +23,7 @@ from fogproof.scene.kinds import given
 from fogproof.scene.phase import PhaseFunction
 
 
-class LayerData(NamedTuple):
+class LayerMedium(NamedTuple):
     """A layer that is neither empty nor endless: albedo, optical thickness, phase function, its moments, L_e [W/(m^2 sr)]."""
 
     albedo: float
@@ -40,7 +40,7 @@ class Below(NamedTuple):
     emission: float
 
 
-class Nodes(NamedTuple):
+class StackDirections(NamedTuple):
     """Directions: nodes mu of weights w, cosines asked for, and pi times the modes of the ground between all of them."""
 
     mu: np.ndarray
@@ -77,7 +77,7 @@ class Stacked(NamedTuple):
     backward: list[np.ndarray]
 
 
-def fluxes(layers: list[LayerData], below: Below, mu0: np.ndarray, n: int) -> Fluxes:
+def fluxes(layers: list[LayerMedium], below: Below, mu0: np.ndarray, n: int) -> Fluxes:
     """Return what becomes of beams of cosines mu0 (v,) by n nodes."""
     slabs = _scaled(layers, n)
     cosines, where = np.unique(seen_at(mu0, _thinnest(slabs)), return_inverse=True)
@@ -91,7 +91,7 @@ def fluxes(layers: list[LayerData], below: Below, mu0: np.ndarray, n: int) -> Fl
     return Fluxes(*(x[0, stacked.nodes :][where.ravel()] for x in found))
 
 
-def once(layers: list[LayerData], below: Below, beams: Beams, side: Side, n: int) -> tuple[np.ndarray, np.ndarray]:
+def once(layers: list[LayerMedium], below: Below, beams: Beams, side: Side, n: int) -> tuple[np.ndarray, np.ndarray]:
     """Return radiance per irradiance [1/sr] after one scattering or reflection, from the densities themselves, and its error."""
     slabs = _scaled(layers, n)
     value, error = np.zeros_like(beams.mu0), np.zeros_like(beams.mu0)
@@ -107,7 +107,7 @@ def once(layers: list[LayerData], below: Below, beams: Beams, side: Side, n: int
 
 
 def more_than_once(
-    layers: list[LayerData], below: Below, beams: Beams, side: Side, n: int, first: np.ndarray
+    layers: list[LayerMedium], below: Below, beams: Beams, side: Side, n: int, first: np.ndarray
 ) -> np.ndarray:
     """Return radiance per irradiance [1/sr] after two scatterings or reflections and more (v,); `first` is that after one."""
     slabs = _scaled(layers, n)
@@ -127,7 +127,9 @@ def more_than_once(
     return total / np.pi
 
 
-def _kernel(stacked: Stacked, slabs: list[Scaled], nodes: Nodes, orders: np.ndarray, side: Side) -> np.ndarray:
+def _kernel(
+    stacked: Stacked, slabs: list[Scaled], nodes: StackDirections, orders: np.ndarray, side: Side
+) -> np.ndarray:
     """Return pi times the modes between the directions aside (m, v, v), less what met something once."""
     aside, cosines = slice(stacked.nodes, None), nodes.aside
     root = stacked.root[aside]
@@ -144,7 +146,7 @@ def _kernel(stacked: Stacked, slabs: list[Scaled], nodes: Nodes, orders: np.ndar
     return found
 
 
-def _scaled(layers: list[LayerData], n: int) -> list[Scaled]:
+def _scaled(layers: list[LayerMedium], n: int) -> list[Scaled]:
     """Return the layers without their forward peaks."""
     return [scaled(np.array([x.albedo]), np.array([x.tau]), x.chi[: MOMENTS * n + 1]) for x in layers]
 
@@ -153,12 +155,12 @@ def _thinnest(slabs: list[Scaled]) -> float:
     return min(float(slab.tau[0]) for slab in slabs)
 
 
-def _nodes(slabs: list[Scaled], below: Below, aside: np.ndarray, n: int) -> Nodes:
+def _nodes(slabs: list[Scaled], below: Below, aside: np.ndarray, n: int) -> StackDirections:
     """Return the directions of a solution."""
     whole = sum(float(slab.tau[0]) for slab in slabs)
     mu, w = quadrature(min(_thinnest(slabs), 10 * float(aside.min())), n, weight=whole)
     reflects = None if below.ground is None else ground_modes(below.ground, np.concatenate([mu, aside]))
-    return Nodes(mu, w, aside, reflects)
+    return StackDirections(mu, w, aside, reflects)
 
 
 def _modes(every: np.ndarray, orders: np.ndarray) -> np.ndarray:
@@ -167,7 +169,9 @@ def _modes(every: np.ndarray, orders: np.ndarray) -> np.ndarray:
     return every[np.where(inside, orders, 0)] * inside[:, None, None]
 
 
-def _stacked(slabs: list[Scaled], layers: list[LayerData], below: Below, nodes: Nodes, orders: np.ndarray) -> Stacked:
+def _stacked(
+    slabs: list[Scaled], layers: list[LayerMedium], below: Below, nodes: StackDirections, orders: np.ndarray
+) -> Stacked:
     """Return all layers on one another, and what is below them."""
     media = [fourier_medium(slab, nodes.mu, nodes.w, nodes.aside, orders) for slab in slabs]
     root, balanced = np.sqrt(2 * media[0].mu * media[0].w), orders == 0

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
-from fogproof.analytic.multiple.layer_stacks import Below, LayerData
+from fogproof.analytic.multiple.layer_stacks import Below, LayerMedium
 from fogproof.analytic.multiple.scattering_arguments import DEEPEST
 from fogproof.analytic.multiple.slab_by_doubling import (
     ENOUGH_OF_PEAKED,
@@ -40,7 +40,7 @@ class Problem(NamedTuple):
             tell the error
     """
 
-    layers: list[LayerData]
+    layers: list[LayerMedium]
     below: Below
     left_out: float
     levels: tuple[int, ...]
@@ -58,7 +58,7 @@ def problem_of(layers: Any, ground: Any, ground_emission: float, levels: tuple[i
     if levels is not None:
         moments, chosen = [phase_moments(one.phase) for one in seen], levels
     data = [
-        LayerData(one.albedo, min(one.tau, DEEPEST), one.phase, its.chi, one.emission)
+        LayerMedium(one.albedo, min(one.tau, DEEPEST), one.phase, its.chi, one.emission)
         for one, its in zip(seen, moments, strict=True)
     ]
     left_out = sum(one.tau for one in layers if one.tau < THINNEST)
@@ -92,6 +92,6 @@ def settled(
     return value, error
 
 
-def collisions(data: list[LayerData]) -> float:
+def collisions(data: list[LayerMedium]) -> float:
     """Return how many collisions a beam has at most, on average, for what errors of the phase function are worth."""
     return sum(one.albedo * min(one.tau, 1 / max(1 - one.albedo, EPS)) for one in data) + 1
