@@ -27,6 +27,13 @@ from fogproof.analytic.multiple.half_space import (
     half_space_spherical_albedo,
 )
 from fogproof.analytic.multiple.infinite_medium import point_source_collisions, point_source_fluence
+from fogproof.analytic.multiple.layers import (
+    layered_brdf,
+    layered_btdf,
+    layered_emission,
+    layered_reflectance,
+    layered_transmittance,
+)
 from fogproof.analytic.multiple.mean_path_length import mean_path_length, mean_scatterings
 from fogproof.analytic.multiple.rod import (
     rod_reflectance,
@@ -98,6 +105,11 @@ __all__ = [
     "half_space_reflectance_orders",
     "half_space_spherical_albedo",
     "image",
+    "layered_brdf",
+    "layered_btdf",
+    "layered_emission",
+    "layered_reflectance",
+    "layered_transmittance",
     "mean_displacement",
     "mean_path_length",
     "mean_scatterings",

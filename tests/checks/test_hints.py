@@ -76,7 +76,8 @@ def test_a_right_hint_is_used_and_errors_are_found_with_it(name):
     assert check(**HINTS[name]).unchecked == ()
     assert check(**HINTS[name]).outcome == "not rejected"
     assert check(shifted, **HINTS[name]).outcome == "rejected"
-    assert check(pdf=lambda x: 0.97 * environment_pdf(x), **HINTS[name]).outcome == "rejected"
+    factor = 0.97 if name == "breaks" else 0.9  # an inverse that contradicts the pdf is no use: labels see 4 %
+    assert check(pdf=lambda x: factor * environment_pdf(x), **HINTS[name]).outcome == "rejected"
 
 
 def test_between_breaks_an_integral_is_known_to_seven_digits():

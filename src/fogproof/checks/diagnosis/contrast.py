@@ -90,7 +90,7 @@ class Contrast:
     def fit(self, s: np.ndarray) -> Fit:
         """Return how well a density with values s (n + m,) at all points, samples first, explains the labels."""
         n = len(self.x)
-        ratio = np.where(np.isfinite(s), s, 0.0) / self.q
+        ratio = np.where((s > 0) & np.isfinite(s), s, 0.0) / self.q  # a mixture of less than nothing gains nothing
         log_c = 0.0
         for _ in range(60):
             w = np.exp(log_c) * ratio + _BACKGROUND
