@@ -219,4 +219,3 @@ def test_selection():
     assert [formula.name for formula in select(["free_path/dist*", "free_path/distance"])] == ["free_path/distance"]
     with pytest.raises(InvalidValueError, match="themes are"):
         select(["nothing"])
-
