@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS
-from fogproof.analytic.variance.voxel_ray import Moments, VoxelRay
+from fogproof.analytic.variance.voxel_ray import EstimateMoments, VoxelRay
 from fogproof.errors import UnsupportedError
 
 Law = list[tuple[Fraction, Fraction]]
@@ -30,12 +30,12 @@ FEWEST = 1e-17
 """Probability of an order, times its largest square, that is left out and counted."""
 
 
-def march(ray: VoxelRay, points: int) -> Moments:
+def march(ray: VoxelRay, points: int) -> EstimateMoments:
     """Return the moments of exp(-depth) of one comb."""
     return _of_values([(float(p), math.exp(-x)) for p, x in _law(ray, points)], float(points))
 
 
-def telescoping(ray: VoxelRay, points: int, ratio: float) -> Moments:
+def telescoping(ray: VoxelRay, points: int, ratio: float) -> EstimateMoments:
     """Return the moments of first + (fine - coarse)/probability, for the offset and the level together."""
     values, chances = [], [(1 - ratio) * ratio**j for j in range(LEVELS)] + [ratio**LEVELS]
     steps = sorted({Fraction(0), Fraction(1), *(s for j in range(LEVELS + 2) for s in _steps(ray, points << j))})
@@ -47,7 +47,7 @@ def telescoping(ray: VoxelRay, points: int, ratio: float) -> Moments:
     return _of_values(values, cost)
 
 
-def unbiased_march(ray: VoxelRay, points: int) -> Moments:
+def unbiased_march(ray: VoxelRay, points: int) -> EstimateMoments:
     """Return the moments of the mean over pivots, by counting how many combs found each value."""
     law = _law(ray, points)
     if len(law) > MOST_VALUES:
@@ -127,12 +127,12 @@ def _compositions(total: int, parts: int) -> list[tuple[int, ...]]:
     return [(first, *rest) for first in range(total + 1) for rest in _compositions(total - first, parts - 1)]
 
 
-def _of_values(values: list[tuple[float, float]], cost: float) -> Moments:
+def _of_values(values: list[tuple[float, float]], cost: float) -> EstimateMoments:
     """Return the moments of a discrete law given as (probability, value); the errors count rounding of all of it."""
     mean = math.fsum(p * v for p, v in values)
     variance = math.fsum(p * (v - mean) ** 2 for p, v in values)
     size, square = math.fsum(p * abs(v) for p, v in values), math.fsum(p * (v * v + mean * mean) for p, v in values)
-    return Moments(mean, variance, cost, 64 * EPS * size, 128 * EPS * square)
+    return EstimateMoments(mean, variance, cost, 64 * EPS * size, 128 * EPS * square)
 
 
 def _ends(ray: VoxelRay) -> list[Fraction]:

@@ -13,7 +13,7 @@ import numpy as np
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.analytic.declaration import quantity
 from fogproof.analytic.variance import comb_estimates, walk_estimates
-from fogproof.analytic.variance.voxel_ray import Moments, VoxelRay, voxel_ray
+from fogproof.analytic.variance.voxel_ray import EstimateMoments, VoxelRay, voxel_ray
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError
 from fogproof.scene.arrays import AxisArray
@@ -128,7 +128,7 @@ def _moments(
     reach: float,
     points: int,
     ratio: float,
-) -> Moments:
+) -> EstimateMoments:
     """Check the arguments that the estimator has, and return its moments."""
     if estimate in ("march", "telescoping", "unbiased-march"):
         if isinstance(points, bool) or not isinstance(points, int | np.integer) or not 1 <= points <= 4096:

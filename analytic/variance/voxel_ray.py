@@ -25,7 +25,7 @@ class VoxelRay(NamedTuple):
         return float(sum((s * way for s, way in zip(self.sigma, self.length, strict=True)), Fraction(0)))
 
 
-class Moments(NamedTuple):
+class EstimateMoments(NamedTuple):
     """Of one realisation: mean, variance and their errors, expected look-ups."""
 
     mean: float

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from fogproof.analytic.arithmetic.error_free import EPS
-from fogproof.analytic.variance.voxel_ray import Moments, VoxelRay
+from fogproof.analytic.variance.voxel_ray import EstimateMoments, VoxelRay
 
 ROUNDING = 256 * EPS
 """Of a sum of exponentials of sums over 64 voxels, relative to its terms and multiplied with the optical depth below."""
@@ -24,14 +24,14 @@ def _share(x: float) -> float:
     return -math.expm1(-x) / x if x != 0 else 1.0
 
 
-def _moments(depth: float, second: float, cost: float, size: float) -> Moments:
+def _moments(depth: float, second: float, cost: float, size: float) -> EstimateMoments:
     """Return the moments of an unbiased estimate with that mean square, whose terms add up to `size`."""
     T = math.exp(-depth)
     error = ROUNDING * (1 + depth) * T
-    return Moments(T, second - T * T, cost, error, ROUNDING * (1 + depth) * (size + T * T))
+    return EstimateMoments(T, second - T * T, cost, error, ROUNDING * (1 + depth) * (size + T * T))
 
 
-def weighted(ray: VoxelRay, m: float) -> Moments:
+def weighted(ray: VoxelRay, m: float) -> EstimateMoments:
     """Return the moments of weighted tracking: a null collision has the weight (sigma + |m - sigma|)/m, real ones end the walk."""
     exponent, cost, alive = 0.0, 0.0, 1.0
     for sigma, way in _voxels(ray):
@@ -45,7 +45,7 @@ def weighted(ray: VoxelRay, m: float) -> Moments:
     return _moments(ray.depth, second, cost, second * grown)
 
 
-def decomposition(ray: VoxelRay, m: float, control: float) -> Moments:
+def decomposition(ray: VoxelRay, m: float, control: float) -> EstimateMoments:
     """Return the moments of exp(-control s) times 0 or 1."""
     whole = float(sum(ray.length))
     cost, alive = 0.0, 1.0
@@ -56,7 +56,7 @@ def decomposition(ray: VoxelRay, m: float, control: float) -> Moments:
     return _moments(ray.depth, second, cost, second)
 
 
-def next_flight(ray: VoxelRay, m: float) -> Moments:
+def next_flight(ray: VoxelRay, m: float) -> EstimateMoments:
     """Return the moments of the sum of next flights.
 
     With a walker's value Z(y) from y on, a(y) = exp(-m (S - y)) the first flight and T(y) what is left of the transmittance,
@@ -81,7 +81,7 @@ def next_flight(ray: VoxelRay, m: float) -> Moments:
     return _moments(depth, second, m * far, size * (1 + m * far))
 
 
-def power_series(ray: VoxelRay, pivot: float, reach: float) -> Moments:
+def power_series(ray: VoxelRay, pivot: float, reach: float) -> EstimateMoments:
     """Return the moments of exp(-c) sum_k Y_1 … Y_k/(k! P_k), Y = c - S sigma(uniform), P_k = prod min(1, reach/i).
 
     Two terms k <= l share k factors, and the longer one is there with probability P_l: their product has the mean

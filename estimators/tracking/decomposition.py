@@ -13,7 +13,7 @@ import numpy as np
 
 from fogproof.contracts import Draws
 from fogproof.errors import InvalidValueError
-from fogproof.estimators.tracking.one_ray import OneRay
+from fogproof.estimators.tracking.ray_looks import RayLooks
 from fogproof.scene import AnyMedium, Ray
 from fogproof.validate import number
 
@@ -35,8 +35,8 @@ class DecompositionTransmittance:
         number("control", self.control, "must be finite and >= 0 [1/m]", 0)
 
     @cached_property
-    def _along(self) -> OneRay:
-        return OneRay(self.medium, self.ray)
+    def _along(self) -> RayLooks:
+        return RayLooks(self.medium, self.ray)
 
     def draw(self, rng: np.random.Generator, n: int) -> Draws:
         """Return n realisations (n,), at the cost of their looks."""

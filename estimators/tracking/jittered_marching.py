@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from fogproof.contracts import Draws
-from fogproof.estimators.tracking.one_ray import OneRay
+from fogproof.estimators.tracking.ray_looks import RayLooks
 from fogproof.estimators.tracking.unbiased_marching import checked_points
 from fogproof.scene import AnyMedium, Ray
 
@@ -25,8 +25,8 @@ class JitteredMarch:
         checked_points(self.points)
 
     @cached_property
-    def _along(self) -> OneRay:
-        return OneRay(self.medium, self.ray)
+    def _along(self) -> RayLooks:
+        return RayLooks(self.medium, self.ray)
 
     def draw(self, rng: np.random.Generator, n: int) -> Draws:
         """Return n realisations (n,), at the cost of their looks."""

@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from fogproof.contracts import Draws
-from fogproof.estimators.tracking.one_ray import OneRay
+from fogproof.estimators.tracking.ray_looks import RayLooks
 from fogproof.scene import AnyMedium, Ray
 from fogproof.validate import number
 
@@ -37,8 +37,8 @@ class PowerSeriesTransmittance:
             number("pivot", self.pivot, "must be finite and >= 0", 0)
 
     @cached_property
-    def _along(self) -> OneRay:
-        return OneRay(self.medium, self.ray)
+    def _along(self) -> RayLooks:
+        return RayLooks(self.medium, self.ray)
 
     def draw(self, rng: np.random.Generator, n: int) -> Draws:
         """Return n realisations (n,), at the cost of their looks."""

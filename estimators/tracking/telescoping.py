@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from fogproof.contracts import Draws
-from fogproof.estimators.tracking.one_ray import OneRay
+from fogproof.estimators.tracking.ray_looks import RayLooks
 from fogproof.estimators.tracking.unbiased_marching import BLOCK, checked_points
 from fogproof.scene import AnyMedium, Ray
 from fogproof.validate import number
@@ -42,8 +42,8 @@ class TelescopingTransmittance:
         number("ratio", self.ratio, "must lie in the open interval (1/4, 1/2)", 0.25, 0.5, open_ends=True)
 
     @cached_property
-    def _along(self) -> OneRay:
-        return OneRay(self.medium, self.ray)
+    def _along(self) -> RayLooks:
+        return RayLooks(self.medium, self.ray)
 
     def draw(self, rng: np.random.Generator, n: int) -> Draws:
         """Return n realisations (n,), at the cost of their looks."""

@@ -18,7 +18,7 @@ import numpy as np
 
 from fogproof.contracts import Draws
 from fogproof.errors import InvalidValueError
-from fogproof.estimators.tracking.one_ray import MOST_LOOK_UPS, OneRay
+from fogproof.estimators.tracking.ray_looks import MOST_LOOK_UPS, RayLooks
 from fogproof.scene import AnyMedium, Ray
 
 STAYS = 0.9
@@ -48,8 +48,8 @@ class UnbiasedMarch:
         checked_points(self.points)
 
     @cached_property
-    def _along(self) -> OneRay:
-        return OneRay(self.medium, self.ray)
+    def _along(self) -> RayLooks:
+        return RayLooks(self.medium, self.ray)
 
     @cached_property
     def looks(self) -> int:

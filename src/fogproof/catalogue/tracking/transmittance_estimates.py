@@ -20,7 +20,7 @@ from fogproof.estimators import (
     UnbiasedMarch,
     WeightedTransmittance,
 )
-from fogproof.estimators.tracking.one_ray import OneRay
+from fogproof.estimators.tracking.ray_looks import RayLooks
 from fogproof.scene import PiecewiseConstantMedium, Ray
 
 EDGES, SIGMA = (0.0, 1.0, 1.7), (0.5, 2.0)
@@ -73,7 +73,7 @@ def _altered(estimator: Any, change: Callable[[np.ndarray], np.ndarray]) -> Call
 
 def _never_divided(points: int) -> Callable[[], Drawn]:
     """Order 2 in one case of ten, whose terms are not divided by that probability."""
-    along = OneRay(VOXELS, RAY)
+    along = RayLooks(VOXELS, RAY)
 
     def draw(rng: np.random.Generator, n: int) -> Draws:
         X = -along.combs(rng, 3 * n, points).reshape(n, 3)
@@ -87,7 +87,7 @@ def _never_divided(points: int) -> Callable[[], Drawn]:
 
 def _one_difference(points: int) -> Callable[[], Drawn]:
     """The first difference always, and no other: the bias is that of a march twice as fine."""
-    along = OneRay(VOXELS, RAY)
+    along = RayLooks(VOXELS, RAY)
 
     def draw(rng: np.random.Generator, n: int) -> Draws:
         return Draws(np.exp(-along.depth(rng.random(n), 2 * points)), np.full(n, 3.0 * points))

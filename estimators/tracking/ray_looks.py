@@ -20,7 +20,7 @@ MOST_LOOK_UPS = 1e9
 
 
 @dataclass(frozen=True, eq=False)
-class OneRay:
+class RayLooks:
     """The part of a ray that lies in the box of its medium."""
 
     medium: AnyMedium
