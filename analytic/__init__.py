@@ -50,6 +50,7 @@ from fogproof.analytic.multiple.slab import (
 )
 from fogproof.analytic.multiple.slab_brdf import slab_brdf, slab_btdf
 from fogproof.analytic.multiple.slab_orders import slab_reflectance_orders, slab_transmittance_orders
+from fogproof.analytic.phase.delta_m import delta_m, delta_m_moments
 from fogproof.analytic.phase.functions import (
     phase_cdf,
     phase_legendre_moments,
@@ -96,6 +97,8 @@ __all__ = [
     "ball_source",
     "chandrasekhar_h",
     "coefficients",
+    "delta_m",
+    "delta_m_moments",
     "emitted_radiance",
     "free_path",
     "golden_values",

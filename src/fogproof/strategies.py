@@ -158,6 +158,16 @@ def _sphere(draw: st.DrawFn) -> dict[str, Any]:
     }
 
 
+def _spheres(draw: st.DrawFn) -> dict[str, Any]:
+    one = _sphere(draw)
+    return {
+        "distribution": draw(st.sampled_from(["gamma", "log-normal"])),
+        "effective_diameter": one.pop("diameter") / 4,
+        "effective_variance": draw(st.floats(0.01, 0.2)),
+        **one,
+    }
+
+
 OWN: dict[str, Any] = {
     "spot": _spot,
     "rectangle": _rectangle,
@@ -168,6 +178,7 @@ OWN: dict[str, Any] = {
     "opengl-fog": _fog,
     "gaussian-puffs": _puffs,
     "mie": _sphere,
+    "polydisperse-mie": _spheres,
     "approximate-mie": lambda draw: {"diameter": draw(st.floats(1e-8, 50e-6))},
     "legendre-series": lambda draw: {
         "moments": LegendreSeries((1.0, *draw(st.tuples(*(st.floats(-r, r) for r in (0.12, 0.08, 0.05)))))).moments

@@ -21,6 +21,7 @@ from fogproof.scene.phase.murky import Murky
 from fogproof.scene.phase.phase_function import PhaseFunction
 from fogproof.scene.phase.phase_function import PhaseFunctionField as PhaseFunctionField
 from fogproof.scene.phase.phase_function import require_phase as require_phase
+from fogproof.scene.phase.polydisperse_mie import PolydisperseMie
 from fogproof.scene.phase.rayleigh import Rayleigh
 from fogproof.scene.phase.schlick import Schlick
 from fogproof.scene.phase.tabulated import Tabulated
@@ -40,6 +41,7 @@ KINDS: dict[str, type[PhaseFunction]] = {
     "fournier-forand": FournierForand,
     "von-mises-fisher": VonMisesFisher,
     "mie": Mie,
+    "polydisperse-mie": PolydisperseMie,
     "approximate-mie": ApproximateMie,
     "legendre-series": LegendreSeries,
     "tabulated": Tabulated,
@@ -77,6 +79,7 @@ __all__ = [
     "Mixture",
     "Murky",
     "PhaseFunction",
+    "PolydisperseMie",
     "Ramp",
     "Rayleigh",
     "Schlick",
