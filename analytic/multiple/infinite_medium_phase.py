@@ -40,7 +40,7 @@ Kernel = Callable[[np.ndarray, np.ndarray], np.ndarray]
 """(alpha, r) -> what exp(-alpha r) counts for."""
 
 
-class Known(NamedTuple):
+class MomentSeries(NamedTuple):
     """The first moments of a phase function, how uncertain they are, and whether others follow."""
 
     chi: np.ndarray
@@ -49,17 +49,17 @@ class Known(NamedTuple):
 
 
 @lru_cache(maxsize=32)
-def moments_of(phase: PhaseFunction) -> Known:
-    """Return as many moments as matter, or the first `MOST` of them."""
+def moments_of(phase: PhaseFunction) -> MomentSeries:
+    """Return as many moments as can be seen, or the first `MOST` of them."""
     count = FEWEST
     while True:
         found = phase_legendre_moments(phase, count)
         tail = float(np.max(np.abs(found.value[3 * count // 4 :])))
         if tail < SEEN or count >= MOST:
-            matter = np.flatnonzero(np.abs(found.value) >= SEEN)[-1]
-            chi = found.value[: max(int(matter), 1) + 1]
+            last = np.flatnonzero(np.abs(found.value) >= SEEN)[-1]
+            chi = found.value[: max(int(last), 1) + 1]
             weight = 2 * np.arange(len(chi)) + 1
-            return Known(chi, float(np.sqrt(weight @ found.error[: len(chi)] ** 2)), tail >= SEEN)
+            return MomentSeries(chi, float(np.sqrt(weight @ found.error[: len(chi)] ** 2)), tail >= SEEN)
         count *= 2
 
 

@@ -73,7 +73,7 @@ def cases() -> list[EstimatorCase]:
             name="half-space/forward",
             title="Half space that scatters forwards, lit by the sun",
             make=lambda: PathTracer(Medium(0.1, 0.9, HenyeyGreenstein(0.5)), half_space, ABOVE, SUNLIGHT),
-            reference=lambda: times(analytic.half_space_brdf(0.9, SUN, VIEW, HenyeyGreenstein(0.5), 0.0), SUN),
+            reference=lambda: times(analytic.half_space_brdf(0.9, SUN, VIEW, HenyeyGreenstein(0.5), np.pi), SUN),
             oracle="half_space_brdf",
             error="scattering is isotropic",
             twin=lambda: PathTracer(Medium(0.1, 0.9), half_space, ABOVE, SUNLIGHT),
