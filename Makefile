@@ -8,7 +8,7 @@ BIN    := $(VENV)/bin
 export OPENBLAS_NUM_THREADS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help verify gallery study test lint format calibrate field-bugs repeat families oracle-docs docs sdist fuzz-oracle oracle-hard kill-study torture findings languages try-wheel golden bench mutants mutants-sample clean
+.PHONY: help verify gallery study test lint format calibrate zoo repeat families oracle-docs docs sdist fuzz-oracle oracle-hard kill-study torture findings languages try-wheel golden bench mutants mutants-sample clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -39,8 +39,8 @@ format: $(VENV)/.installed-lint  ## let ruff rewrite what it can
 calibrate: $(VENV)/.installed-test  ## how often the checks reject what is right; an hour, rewrites docs/calibration.md
 	$(BIN)/python tools/calibrate.py
 
-field-bugs: $(VENV)/.installed-test  ## bugs that shipped elsewhere, planted: rejected, and their cause named
-	$(BIN)/python tools/field_bugs
+zoo: $(VENV)/.installed-test  ## known bugs against the checks and against other tests; half an hour, resumable
+	$(BIN)/fogproof zoo --others -o build/zoo
 
 repeat: $(VENV)/.installed-test  ## 20 runs of the catalogue with fresh seeds: no false alarm
 	$(BIN)/python tools/repeat_verify.py

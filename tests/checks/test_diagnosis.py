@@ -4,23 +4,23 @@ import random
 
 import numpy as np
 import pytest
-from field_bugs import BUGS
-from field_bugs.bug import directions, even, hg
 
 from fogproof import HalfLine, Interval, UnitSphere, UnitSquare, check_sampler
 from fogproof.checks.diagnosis import holes
 from fogproof.checks.diagnosis.diagnose import _setting
 from fogproof.checks.diagnosis.factors import named_factor
 from fogproof.checks.subject import Subject
+from fogproof.zoo import select
+from fogproof.zoo.laws import directions, even, hg
 
 N = 200_000
 
 
 def test_bugs_that_shipped_are_rejected_and_most_are_named():
-    """A dozen by chance; `make field-bugs` has them all, and the share that is named."""
+    """A dozen by chance; `fogproof zoo field` has them all, and the share that is named."""
     seed = int(np.random.SeedSequence().generate_state(1)[0])
-    drawn = random.Random(seed).sample(list(BUGS), 12)
-    verdicts = [(bug, bug.check(N, seed)) for bug in drawn]
+    drawn = random.Random(seed).sample(select(["field"]), 12)
+    verdicts = [(bug, bug.case.run(1e-6, seed, N)) for bug in drawn]
     assert not [bug.name for bug, verdict in verdicts if verdict.outcome != "rejected"], f"seed {seed}"
     unnamed = [f"{bug.name}: {verdict.cause}" for bug, verdict in verdicts if verdict.cause not in bug.causes]
     assert len(unnamed) <= 3, f"{unnamed}, seed {seed}"

@@ -30,6 +30,7 @@ _COMMANDS = {
     "plan": "Say which terms a scene needs, and which methods serve it.",
     "study": "Measure speed against error, resumable, on one core or a cluster.",
     "report": "Make the page of a run again, or compare two runs.",
+    "zoo": "Run known bugs against the checks, and print which are killed.",
     "gallery": "Draw the theory's pictures: oracle's curves, estimators' samples.",
 }
 

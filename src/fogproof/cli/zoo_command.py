@@ -1,0 +1,89 @@
+"""`fogproof zoo`."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+
+import click
+
+from fogproof.checks import fresh_seed
+from fogproof.cli.signals import code_of, stoppable
+from fogproof.cli.terminal import say
+from fogproof.errors import InvalidValueError
+
+
+@click.command("zoo")
+@click.argument("bugs", nargs=-1, metavar="[BUG]...")
+@click.option(
+    "-o",
+    "--output",
+    "folder",
+    metavar="DIR",
+    type=click.Path(path_type=Path, file_okay=False),
+    help="Keep the rows in DIR/zoo.jsonl; a run that was stopped goes on there.",
+)
+@click.option(
+    "--samples", type=click.IntRange(min=1000), default=1_000_000, show_default=True, help="Most of one check."
+)
+@click.option("--alpha", type=float, default=1e-6, show_default=True, help="False-alarm probability of one check.")
+@click.option(
+    "--seed", type=click.IntRange(min=0), help="Seed of the run; a fresh one is drawn and printed by default."
+)
+@click.option("--workers", type=click.IntRange(min=1), default=2, show_default=True, help="Threads.")
+@click.option("--others", is_flag=True, help="Put other tests of the field to the same subjects.")
+@click.option("--json", "as_json", is_flag=True, help="Print rows as lines of JSON.")
+def command(
+    bugs: tuple[str, ...],
+    folder: Path | None,
+    samples: int,
+    alpha: float,
+    seed: int | None,
+    workers: int,
+    others: bool,
+    as_json: bool,
+) -> int:
+    """Run known bugs against the checks: which are killed, by what, with how many samples, and is the cause named rightly?
+
+    BUG is a name, a folder of names, or a glob: field (bugs that shipped), errata (misprints of the literature), families (errors
+    in a corner of the parameters), mutants (errors planted in every case of the catalogue), right (subjects without any error).
+    All by default, which takes half an hour. Ends with 1 if a folder's goal is not met.
+
+    \b
+    Example:  fogproof zoo field errata -o build/zoo
+    """
+    from fogproof.zoo import select
+    from fogproof.zoo.matrix import counts, line, summary
+    from fogproof.zoo.running import ZooLog, run_zoo
+
+    if not 0 < alpha < 1:
+        raise InvalidValueError("--alpha", "must lie in (0, 1)", alpha)
+    chosen = select(bugs)
+    log, rows = None, []
+    if folder is not None:
+        settings = {"samples": samples, "alpha": alpha, "others": others}
+        log = ZooLog(folder / "zoo.jsonl", settings)
+        names = {bug.name for bug in chosen}
+        rows = [row for row in log.read() if row.name in names]
+    seed = fresh_seed() if seed is None else seed
+    width = max(len(bug.name) for bug in chosen)
+    stopped = 0
+    judge = None
+    try:
+        with stoppable():
+            for row in run_zoo(
+                chosen, samples=samples, alpha=alpha, seed=seed, workers=workers, others=judge, known=rows
+            ):
+                rows.append(row)
+                if log is not None:
+                    log.add(row)
+                say(json.dumps(asdict(row)) if as_json else line(row, width))
+    except KeyboardInterrupt as stop:
+        stopped = code_of(stop)
+        say(f"stopped after {len(rows)} of {len(chosen)} bugs", err=True)
+    order = {bug.name: i for i, bug in enumerate(chosen)}
+    rows.sort(key=lambda row: order[row.name])
+    say(summary(rows), err=True)
+    say(f"{len(rows)} of {len(chosen)} run; seed {seed}", err=True)
+    return stopped or int(not all(count.good for count in counts(rows)))

@@ -1,0 +1,157 @@
+"""Running the zoo: each bug against the same checks that users call, its verdict as one row."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import time
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any, Literal
+
+from fogproof.errors import InvalidInputError, NotInstalledError
+from fogproof.verify import case_seed
+from fogproof.zoo.bug import Bug
+
+Status = Literal[
+    "killed", "survived", "infeasible", "equal", "passed", "inconclusive", "false-alarm", "error", "skipped"
+]
+
+
+@dataclass(frozen=True)
+class ZooRow:
+    """What came of one bug, or of a right subject.
+
+    name, title, source, causes, needed   of the bug; a right subject has no causes
+    status    killed; survived; infeasible (not rejected, and no test could have at so many samples); equal (not rejected, and
+              nothing is wrong); of right subjects passed, inconclusive or false-alarm; error; skipped
+    outcome   of the verdict; cause is its, `named` whether it is one of those that are right
+    checks    the findings that rejected, the strongest first
+    samples   drawn until the check stopped
+    seed      of the check
+    others    p-values of other tests on the same subject, None where a test does not apply
+    """
+
+    name: str
+    title: str
+    source: str
+    causes: tuple[str, ...]
+    needed: float
+    status: Status
+    outcome: str = ""
+    cause: str = ""
+    named: bool = False
+    checks: tuple[str, ...] = ()
+    samples: int = 0
+    seconds: float = 0.0
+    seed: int = 0
+    reason: str = ""
+    others: dict[str, float | None] = field(default_factory=dict)
+
+    @property
+    def folder(self) -> str:
+        """The first part of the name."""
+        return self.name.partition("/")[0]
+
+
+Judge = Callable[[Any, int], dict[str, float | None]]
+
+
+def run_zoo(
+    bugs: Iterable[Bug],
+    *,
+    samples: int,
+    alpha: float,
+    seed: int,
+    workers: int,
+    others: Judge | None = None,
+    known: Iterable[ZooRow] = (),
+) -> Iterator[ZooRow]:
+    """Run the bugs on threads, yielding each row as it is ready; a row depends on `seed` and the bug's name alone.
+
+    samples  most of one check;  alpha its false-alarm probability
+    others   other tests to run on each sampler: (sampler, seed) -> p-values
+    known    rows of an earlier run, whose bugs are not run again
+    """
+    done = {row.name for row in known}
+    pool = ThreadPoolExecutor(max_workers=workers)
+    try:
+        jobs = [pool.submit(run_bug, bug, samples, alpha, seed, others) for bug in bugs if bug.name not in done]
+        for job in as_completed(jobs):
+            yield job.result()
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+def run_bug(bug: Bug, samples: int, alpha: float, seed: int, others: Judge | None = None) -> ZooRow:
+    """Run one bug; whatever goes wrong in it is its row, never the end of the run."""
+    started, own = time.perf_counter(), case_seed(seed, bug.name)
+    common: dict[str, Any] = {"name": bug.name, "title": bug.title, "source": bug.source, "causes": bug.causes}
+    common |= {"needed": float(bug.needed), "seed": own}
+    needs = getattr(bug.case, "needs", "")
+    if needs and importlib.util.find_spec(needs) is None:
+        return ZooRow(**common, status="skipped", reason=f"{needs} is not installed")
+    try:
+        verdict = bug.case.run(alpha, own, samples)
+        asked = {} if others is None else others(bug.case, own)
+    except NotInstalledError as error:
+        return ZooRow(**common, status="skipped", reason=str(error))
+    except Exception as error:  # a defect of one subject is its own row
+        return ZooRow(**common, status="error", reason=f"{type(error).__name__}: {error}")
+    rejecting = sorted((f for f in verdict.findings if f.outcome == "rejected"), key=lambda f: f.p_value or 0.0)
+    return ZooRow(
+        **common,
+        status=_status(bug, verdict.outcome, samples),
+        outcome=verdict.outcome,
+        cause=verdict.cause,
+        named=verdict.outcome == "rejected" and verdict.cause in bug.causes,
+        checks=tuple(f.check for f in rejecting),
+        samples=verdict.samples,
+        seconds=round(time.perf_counter() - started, 3),
+        others=asked,
+    )
+
+
+def _status(bug: Bug, outcome: str, samples: int) -> Status:
+    if not bug.causes and not bug.equal:
+        return {"rejected": "false-alarm", "inconclusive": "inconclusive"}.get(outcome, "passed")  # type: ignore[return-value]
+    if bug.equal:
+        return "false-alarm" if outcome == "rejected" else "equal"
+    if outcome == "rejected":
+        return "killed"
+    return "infeasible" if bug.needed > samples else "survived"
+
+
+@dataclass(frozen=True)
+class ZooLog:
+    """Rows of a run, a line of JSON each, so that a run that was stopped goes on where it was.
+
+    path      of the file
+    settings  what the rows depend on: a file of other settings is refused
+    """
+
+    path: Path
+    settings: dict[str, Any]
+
+    def read(self) -> list[ZooRow]:
+        """Return the rows of earlier runs."""
+        if not self.path.exists():
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+            self.path.write_text(json.dumps(self.settings) + "\n")
+            return []
+        try:
+            first, *rest = [json.loads(line) for line in self.path.read_text().splitlines()]
+            rows = [ZooRow(**{**row, "causes": tuple(row["causes"]), "checks": tuple(row["checks"])}) for row in rest]
+        except (ValueError, TypeError, KeyError) as error:
+            raise InvalidInputError(f"{self.path} holds no rows of a zoo: {error}; delete it", str(self.path)) from None
+        if first != self.settings:
+            what = f"{self.path} is of other settings, {first}; choose another folder, or delete it"
+            raise InvalidInputError(what, str(self.path))
+        return rows
+
+    def add(self, row: ZooRow) -> None:
+        """Write one row."""
+        with self.path.open("a") as file:
+            file.write(json.dumps(asdict(row)) + "\n")

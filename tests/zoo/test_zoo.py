@@ -1,0 +1,99 @@
+"""The zoo tells killed from survived, a right cause from a wrong one, and a right subject from a bug; a stopped run goes on."""
+
+import json
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from fogproof.cli.commands import cli
+from fogproof.domains import Interval
+from fogproof.errors import InvalidInputError
+from fogproof.zoo import all_bugs, select
+from fogproof.zoo.bug import sampler_bug
+from fogproof.zoo.laws import ones
+from fogproof.zoo.matrix import counts
+from fogproof.zoo.running import ZooLog, run_bug, run_zoo
+
+UNIT = Interval(0, 1)
+ONE = {"dimensions": 1}
+
+
+def bug(sample, causes=("wrong power",), folder="field", title="planted"):
+    return sampler_bug(title, "nowhere", sample, ones, causes, UNIT, ONE, folder)
+
+
+def of(rows):
+    return counts(rows)[0]
+
+
+def test_every_bug_has_a_name_of_its_own_a_source_and_a_cause():
+    bugs = all_bugs()
+    assert len({b.name for b in bugs}) == len(bugs) > 60
+    for b in bugs:
+        assert b.source
+        assert " " not in b.name
+        assert b.causes or b.equal or b.name.startswith("right/"), b.name
+
+
+def test_bent_uniforms_are_killed_and_right_ones_are_not():
+    bent = run_bug(bug(lambda u: u[:, 0] ** 1.5), 20_000, 1e-6, 1)
+    assert (bent.status, bent.outcome) == ("killed", "rejected")
+    assert bent.checks
+    assert of([bent]).killed == of([bent]).feasible == 1
+    missed = run_bug(bug(lambda u: u[:, 0]), 20_000, 1e-6, 1)
+    assert missed.status == "survived"
+    assert not of([missed]).good
+
+
+def test_a_wrong_cause_is_no_right_one():
+    row = run_bug(bug(lambda u: u[:, 0] ** 1.5, causes=("hidden state",)), 20_000, 1e-6, 1)
+    assert row.status == "killed"
+    assert not row.named
+    assert not of([row]).good
+
+
+def test_a_right_subject_that_is_rejected_spoils_its_folder():
+    right = run_bug(bug(lambda u: u[:, 0], causes=(), folder="right"), 20_000, 1e-6, 1)
+    wrong = run_bug(bug(lambda u: u[:, 0] ** 1.5, causes=(), folder="right"), 20_000, 1e-6, 1)
+    assert (right.status, wrong.status) == ("passed", "false-alarm")
+    assert of([right]).good
+    assert not of([right, wrong]).good
+
+
+def test_what_raises_is_its_own_row():
+    def sample(u):
+        raise RuntimeError("no")
+
+    rows = list(
+        run_zoo(
+            [bug(sample), bug(lambda u: u[:, 0] ** 1.5, title="other")], samples=20_000, alpha=1e-6, seed=1, workers=2
+        )
+    )
+    assert sorted(row.status for row in rows) == ["error", "killed"]
+    assert not of(rows).good
+
+
+def test_a_stopped_run_goes_on_and_other_settings_are_refused(tmp_path):
+    log = ZooLog(tmp_path / "deep" / "zoo.jsonl", {"samples": 20_000})
+    assert log.read() == []
+    row = run_bug(bug(lambda u: u[:, 0] ** 1.5), 20_000, 1e-6, 1)
+    log.add(row)
+    assert log.read() == [row]
+    assert list(run_zoo([bug(np.exp)], samples=1000, alpha=1e-6, seed=1, workers=1, known=[row])) == []
+    with pytest.raises(InvalidInputError, match="other settings"):
+        ZooLog(log.path, {"samples": 1}).read()
+    log.path.write_text("{}\n{broken")
+    with pytest.raises(InvalidInputError, match="holds no rows"):
+        log.read()
+
+
+def test_the_command_prints_rows_and_ends_with_what_it_found(tmp_path):
+    arguments = ["zoo", "field/disk-with-r-u", "--samples", "20000", "-o", str(tmp_path), "--json"]
+    first = CliRunner().invoke(cli, arguments, standalone_mode=False)
+    assert first.return_value == 0, first.output
+    assert json.loads(first.stdout.splitlines()[0])["status"] == "killed"
+    again = CliRunner().invoke(cli, arguments, standalone_mode=False)
+    assert again.stdout == ""  # nothing is left to do
+    with pytest.raises(InvalidInputError, match="no bug is called"):
+        select(["feild"])
