@@ -12,6 +12,7 @@ from fogproof.estimators.free_paths.extinction import Constant, Exponential, Lin
 from fogproof.estimators.free_paths.fog import AnalogFog, CertainCollisionFog, HomogeneousSpectralFog, UniformEmission
 from fogproof.estimators.free_paths.free_path import FreePath, HomogeneousSpectralFreePath, TruncatedFreePath
 from fogproof.estimators.free_paths.transmittance import AnalogTransmittance, SpectralTransmittance
+from fogproof.estimators.paths.layered_walks import LayeredWalks
 from fogproof.estimators.paths.random_walks import PointSourceWalks, RandomFlights, RodWalks, ScatteringsUnderUniformSky
 from fogproof.estimators.paths.spectral import SpectralPathTracer
 from fogproof.estimators.paths.tracer import PathTracer, Roulette
@@ -46,6 +47,7 @@ __all__ = [
     "FreePath",
     "HomogeneousSpectralFog",
     "HomogeneousSpectralFreePath",
+    "LayeredWalks",
     "Linear",
     "LitMedium",
     "MajorantGrid",
