@@ -18,7 +18,7 @@ CLAMP, EPS, STEEP = 0.95, 1e-3, 0.01
 
 
 @dataclass(frozen=True)
-class Lobe:
+class TiltedLobe:
     """Henyey & Greenstein's function about an axis; `drawn` is the g, `frame` the axis that its samples really have."""
 
     g: float
@@ -122,17 +122,17 @@ class Coin:
 UP = (0.0, 0.0, 1.0)
 
 
-def lobe(drawn: Callable[[float], float] = lambda g: g) -> Callable[[float], Lobe]:
+def lobe(drawn: Callable[[float], float] = lambda g: g) -> Callable[[float], TiltedLobe]:
     """Return lobes about z, drawn with another g."""
-    return lambda g: Lobe(g, UP, drawn(g), frame)
+    return lambda g: TiltedLobe(g, UP, drawn(g), frame)
 
 
-def tilted(made: Callable[[np.ndarray], np.ndarray] = frame) -> Callable[[Any], Lobe]:
+def tilted(made: Callable[[np.ndarray], np.ndarray] = frame) -> Callable[[Any], TiltedLobe]:
     """Return lobes about any axis, in a frame made some way."""
 
-    def make(v: Any) -> Lobe:
+    def make(v: Any) -> TiltedLobe:
         w = np.array(v) / np.linalg.norm(v)
-        return Lobe(0.5, tuple((w / np.linalg.norm(w)).tolist()), 0.5, made)
+        return TiltedLobe(0.5, tuple((w / np.linalg.norm(w)).tolist()), 0.5, made)
 
     return make
 
