@@ -39,6 +39,10 @@ ENOUGH = 1e-11
 ROUNDING = 256 * EPS
 
 
+VIEWS = 24
+"""Pairs of directions evaluated at a time where the phase function is not isotropic."""
+
+
 class Beams(NamedTuple):
     """Cosines of what comes in and of what goes out, and the azimuth between their ways on, (v,) each."""
 
@@ -76,6 +80,18 @@ def directional(c: float, tau: float, beams: Beams, phase: PhaseFunction, side: 
                     break
             before = found
     return found, error + 2 * TINY
+
+
+def directional_in_parts(
+    c: float, tau: float, beams: Beams, phase: PhaseFunction, side: Side
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the same for any number of pairs of directions, a few at a time."""
+    pairs, which = np.unique(np.stack([beams.mu0, beams.mu]), axis=1, return_inverse=True)
+    value, error = np.zeros_like(beams.mu), np.zeros_like(beams.mu)
+    for first in range(0, pairs.shape[1], VIEWS):
+        some = (which.ravel() >= first) & (which.ravel() < first + VIEWS)
+        value[some], error[some] = directional(c, tau, Beams(*(x[some] for x in beams)), phase, side)
+    return value, error
 
 
 def scattered_once(c: float, beams: Beams, phase: PhaseFunction, side: Side) -> tuple[np.ndarray, np.ndarray]:
