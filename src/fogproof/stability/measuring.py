@@ -102,21 +102,21 @@ def _measure(formula: Formula, region: HardRegion, precision: Precision, n: int)
     for name, source, evaluate, bound in forms:
         key: dict[str, Any] = {"formula": formula.name, "form": name, "source": source, "region": region.name}
         key |= {"precision": precision, "points": count, "bound": bound}
-        told = {} if fault else _told(evaluate, arguments, truths, rows, bound)
-        if "reason" in told or fault:  # one formula that fails costs no other its result
-            told = {"worst": math.inf, "ulps": math.inf, "condition": 0.0, "share": None, "stated": None, **told}
-            told |= {
+        outcome = {} if fault else _outcome(evaluate, arguments, truths, rows, bound)
+        if "reason" in outcome or fault:  # one formula that fails costs no other its result
+            outcome = {"worst": math.inf, "ulps": math.inf, "condition": 0.0, "share": None, "stated": None, **outcome}
+            outcome |= {
                 "violations": count,
                 "at": rows[0],
                 "value": math.nan,
                 "truth": "",
-                "reason": told.get("reason", fault),
+                "reason": outcome.get("reason", fault),
             }
-        found.append(FormError(**key, **told, axes=axes))
+        found.append(FormError(**key, **outcome, axes=axes))
     return found
 
 
-def _told(
+def _outcome(
     evaluate: Evaluate,
     arguments: dict[str, np.ndarray],
     points: list[Point],
