@@ -16,6 +16,10 @@ help:  ## list the targets
 verify: $(VENV)/.installed  ## every sampler and estimator, and its broken twin, against its reference; the page lands in build/report
 	$(BIN)/fogproof verify --twins --report build/report
 
+.PHONY: stability
+stability: $(VENV)/.installed-test  ## formulas and samplers beside 50-digit truth in hard regions; the page lands in build/stability
+	$(BIN)/fogproof stability -o build/stability
+
 gallery: $(VENV)/.installed  ## the theory in pictures; the page lands in build/gallery
 	$(BIN)/fogproof gallery -o build/gallery
 

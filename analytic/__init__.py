@@ -27,6 +27,13 @@ from fogproof.analytic.multiple.half_space import (
     half_space_spherical_albedo,
 )
 from fogproof.analytic.multiple.infinite_medium import point_source_collisions, point_source_fluence
+from fogproof.analytic.multiple.layers import (
+    layered_brdf,
+    layered_btdf,
+    layered_emission,
+    layered_reflectance,
+    layered_transmittance,
+)
 from fogproof.analytic.multiple.mean_path_length import mean_path_length, mean_scatterings
 from fogproof.analytic.multiple.rod import (
     rod_reflectance,
@@ -43,6 +50,7 @@ from fogproof.analytic.multiple.slab import (
 )
 from fogproof.analytic.multiple.slab_brdf import slab_brdf, slab_btdf
 from fogproof.analytic.multiple.slab_orders import slab_reflectance_orders, slab_transmittance_orders
+from fogproof.analytic.phase.delta_m import delta_m, delta_m_moments
 from fogproof.analytic.phase.functions import (
     phase_cdf,
     phase_legendre_moments,
@@ -71,6 +79,11 @@ from fogproof.analytic.variance.transmittance import (
     transmittance_second_moment,
     transmittance_variance,
 )
+from fogproof.analytic.variance.voxel_estimates import (
+    voxel_estimate_cost,
+    voxel_estimate_mean,
+    voxel_estimate_variance,
+)
 
 __all__ = [
     "Coefficients",
@@ -89,6 +102,8 @@ __all__ = [
     "ball_source",
     "chandrasekhar_h",
     "coefficients",
+    "delta_m",
+    "delta_m_moments",
     "emitted_radiance",
     "free_path",
     "golden_values",
@@ -98,6 +113,11 @@ __all__ = [
     "half_space_reflectance_orders",
     "half_space_spherical_albedo",
     "image",
+    "layered_brdf",
+    "layered_btdf",
+    "layered_emission",
+    "layered_reflectance",
+    "layered_transmittance",
     "mean_displacement",
     "mean_path_length",
     "mean_scatterings",
@@ -144,5 +164,8 @@ __all__ = [
     "transmittance_lookups",
     "transmittance_second_moment",
     "transmittance_variance",
+    "voxel_estimate_cost",
+    "voxel_estimate_mean",
+    "voxel_estimate_variance",
     "white_furnace",
 ]

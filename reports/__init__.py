@@ -15,6 +15,7 @@ from fogproof.reports.gallery.pictures import write_gallery
 from fogproof.reports.pages.comparison import exit_code, write_comparison_page
 from fogproof.reports.pages.junit import write_junit
 from fogproof.reports.pages.page import write_page
+from fogproof.reports.pages.stability import write_stability
 from fogproof.reports.pages.study import write_study_page
 from fogproof.reports.records.runs import (
     RESULTS,
@@ -36,6 +37,7 @@ __all__ = [
     "write_comparison",
     "write_gallery",
     "write_report",
+    "write_stability",
 ]
 
 

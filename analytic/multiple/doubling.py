@@ -54,6 +54,8 @@ def layer(medium: ScatteringLayer, tau: np.ndarray) -> Layer:
     times = max(0, int(np.ceil(np.log2(np.max(tau) / np.min(medium.mu)))))
     thin = thin_layer(medium, tau * 2.0**-times)
     for i in range(times):
+        if not (np.any(thin.ray) or np.any(thin.T)):
+            break  # nothing passes any more, not even a denormal number: more of it changes nothing
         thin = doubled(thin, medium)
         thin = thin._replace(ray=np.exp(-(tau * 2.0 ** (i + 1 - times))[:, None] / medium.mu))
     return thin

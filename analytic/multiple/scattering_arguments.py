@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from fogproof.errors import InvalidValueError
+from fogproof.scene.phase import Isotropic, PhaseFunction, require_phase
 from fogproof.validate import as_float_array, require
 
 
@@ -56,3 +57,20 @@ def checked_count(name: str, value: Any, most: int = MOST) -> int:
     if isinstance(value, bool) or not isinstance(value, int | np.integer) or not 0 <= value <= most:
         raise InvalidValueError(name, f"must be a whole number in [0, {most}]", value)
     return int(value)
+
+
+def checked_phase(phase: Any) -> PhaseFunction:
+    """Return the phase function, isotropic where none is given."""
+    if phase is None:
+        return Isotropic()
+    require_phase("phase", phase)
+    return phase
+
+
+def checked_azimuth(azimuth: Any, isotropic: bool) -> np.ndarray:
+    """Return azimuths between two ways [rad]; they may be left out where scattering is isotropic."""
+    if azimuth is None and not isotropic:
+        raise InvalidValueError("azimuth", "must be given [rad]", azimuth, "only isotropic scattering does without it")
+    angle = as_float_array("azimuth", 0.0 if azimuth is None else azimuth)
+    require("azimuth", angle, np.isfinite(angle), "must be finite [rad]")
+    return angle

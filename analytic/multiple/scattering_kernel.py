@@ -72,3 +72,24 @@ def associated_legendre(m: int, highest: int, mu: np.ndarray) -> np.ndarray:
             (n + 1 - m) * (n + 1 + m)
         )
     return P
+
+
+def fourier_medium(
+    slab: Scaled, mu: np.ndarray, w: np.ndarray, aside: np.ndarray, orders: np.ndarray
+) -> ScatteringLayer:
+    """Return the scattering of one slab in Fourier modes (b,) of the azimuth, at nodes mu of weights w and at directions aside."""
+    n = len(mu)
+    every, last = np.concatenate([mu, aside]), len(slab.chi) - 1
+    forward, backward = np.empty((2, len(orders), len(every), len(every)))
+    sign = (-1.0) ** np.arange(last + 1)
+    for i, m in enumerate(orders.tolist()):
+        P = associated_legendre(m, last, every)
+        if m == 0:
+            P[2::2] -= (P[2::2, :n] @ w)[:, None] / np.sum(w)
+        weighted = ((2 * np.arange(last + 1) + 1) * slab.chi)[m:, None] * P[m:]
+        forward[i] = P[m:].T @ weighted
+        backward[i] = (P[m:] * (sign[m:] * (-1) ** m)[:, None]).T @ weighted
+    half = float(slab.albedo[0]) / 2
+    weights = np.concatenate([w / np.sum(w), np.full(len(aside), SIDE)])
+    absorbed = np.full(len(orders), slab.absorbed[0])
+    return ScatteringLayer(every, weights, half * forward, half * backward, absorbed, orders == 0)

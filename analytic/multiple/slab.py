@@ -12,13 +12,18 @@ from typing import Any
 import numpy as np
 
 from fogproof.analytic.declaration import quantity
-from fogproof.analytic.multiple.scattering_arguments import checked_albedo, checked_cosine, checked_length
+from fogproof.analytic.multiple.scattering_arguments import (
+    checked_albedo,
+    checked_cosine,
+    checked_length,
+    checked_phase,
+)
 from fogproof.analytic.multiple.slab_by_doubling import doubled_values, is_isotropic
 from fogproof.analytic.multiple.slab_by_modes import SOURCE, Quantity, isotropic_values
 from fogproof.contracts import Reference
 from fogproof.errors import UnsupportedError
 from fogproof.scene.arrays import FloatArray
-from fogproof.scene.phase import Isotropic, PhaseFunction, PhaseFunctionField, require_phase
+from fogproof.scene.phase import PhaseFunctionField
 from fogproof.validate import number
 
 METHOD = "discrete ordinates"
@@ -120,14 +125,6 @@ def slab_diffuse_transmittance(
 ) -> Reference:
     """Return the share of diffuse light that passes a slab; arguments and error as in `slab_reflectance`."""
     return _values(albedo, tau, None, phase, refractive_index, "transmitted")
-
-
-def checked_phase(phase: Any) -> PhaseFunction:
-    """Return the phase function, isotropic where none is given."""
-    if phase is None:
-        return Isotropic()
-    require_phase("phase", phase)
-    return phase
 
 
 def _values(albedo: Any, tau: Any, mu0: Any, phase: Any, index: Any, wanted: Quantity) -> Reference:

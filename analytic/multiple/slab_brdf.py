@@ -21,19 +21,18 @@ from fogproof.analytic.multiple.isotropic_modes import isotropic_modes
 from fogproof.analytic.multiple.scattering_arguments import (
     DEEPEST,
     checked_albedo,
+    checked_azimuth,
     checked_cosine,
     checked_length,
+    checked_phase,
     seen_at,
 )
-from fogproof.analytic.multiple.slab import checked_phase
 from fogproof.analytic.multiple.slab_by_doubling import is_isotropic
-from fogproof.analytic.multiple.slab_directions import Beams, Side, directional
+from fogproof.analytic.multiple.slab_directions import Beams, Side, directional_in_parts
 from fogproof.analytic.multiple.slab_modes import Modes, amplitudes, quadrature, scattered
 from fogproof.contracts import Reference
-from fogproof.errors import InvalidValueError
 from fogproof.scene.arrays import FloatArray
 from fogproof.scene.phase import PhaseFunctionField
-from fogproof.validate import as_float_array, require
 
 METHOD = "discrete ordinates"
 SOURCE = "Chandrasekhar 1960, Radiative Transfer, chapter 8"
@@ -42,9 +41,6 @@ FINE, COARSE = 20, 16
 """Half the number of nodes of a solution, and of the one it is compared with."""
 
 RELATIVE_ROUNDING = 1e-13
-
-VIEWS = 24
-"""Pairs of directions evaluated at a time where the phase function is not isotropic."""
 
 DEEP, FADED = 1e3, 60.0
 """Thickness beyond which, and times k, a slab is taken for an endless one."""
@@ -112,10 +108,7 @@ def slab_btdf(
 def _kernel(albedo: Any, tau: Any, mu0: Any, mu: Any, phase: Any, azimuth: Any, side: Side) -> Reference:
     phase = checked_phase(phase)
     isotropic = is_isotropic(phase)
-    if azimuth is None and not isotropic:
-        raise InvalidValueError("azimuth", "must be given [rad]", azimuth, "only isotropic scattering does without it")
-    angle = as_float_array("azimuth", 0.0 if azimuth is None else azimuth)
-    require("azimuth", angle, np.isfinite(angle), "must be finite [rad]")
+    angle = checked_azimuth(azimuth, isotropic)
     checked = checked_albedo(albedo), checked_length("tau", tau), checked_cosine("mu0", mu0), checked_cosine("mu", mu)
     arrays = np.broadcast_arrays(*checked, angle)
     c, b, ins, outs, turn = (x.ravel() for x in arrays)
@@ -134,11 +127,8 @@ def _kernel(albedo: Any, tau: Any, mu0: Any, mu: Any, phase: Any, azimuth: Any, 
                 value[here] = fine
                 error[here] = np.abs(fine - coarse) + (RELATIVE_ROUNDING + 4 * EPS * one_b) * fine + TINY
                 continue
-            pairs, which = np.unique(np.stack([ins[here], outs[here]]), axis=1, return_inverse=True)
-            for first in range(0, pairs.shape[1], VIEWS):
-                some = here[(which.ravel() >= first) & (which.ravel() < first + VIEWS)]
-                beams = Beams(ins[some], outs[some], turn[some])
-                value[some], error[some] = directional(one_c, one_b, beams, phase, side)
+            beams = Beams(ins[here], outs[here], turn[here])
+            value[here], error[here] = directional_in_parts(one_c, one_b, beams, phase, side)
     if side == "transmitted":  # what passes is nothing, or if nothing is absorbed as 1/tau
         value, error = value / deeper, error / deeper + TINY * (deeper > 1)
     return Reference(value.reshape(arrays[0].shape), error.reshape(arrays[0].shape), METHOD, SOURCE)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -85,27 +86,34 @@ def is_isotropic(phase: PhaseFunction) -> bool:
 
 def _first(chi: np.ndarray) -> int:
     """Return the first level worth a solution: the one before that where what is cut off would no longer be seen."""
-    if _slow(chi):
+    if decays_slowly(chi):
         return 0
     seen = [abs(float(chi[MOMENTS * n])) > CUT for n in LEVELS]
     return max(0, min(sum(seen), len(LEVELS) - 1) - 1)
 
 
-def _slow(chi: np.ndarray) -> bool:
+def decays_slowly(chi: np.ndarray) -> bool:
     """Return whether the moments fall so slowly that two solutions do not tell the error: kinks, peaks, singularities."""
     sixth = len(chi) // 6
     last, half = (float(np.max(np.abs(chi[end - sixth : end]))) for end in (len(chi), len(chi) // 2))
     return last > CUT and last > SLOW * half
 
 
-def _levels(phase: PhaseFunction) -> tuple[LayerMoments, tuple[int, ...]]:
-    """Return the moments of the phase function and the levels worth a solution, the coarsest first."""
-    moments = phase_moments(phase)
-    if abs(float(moments.chi[-1])) > CUT and _exponential(moments.chi):
-        more = phase_moments(phase, PEAKED[-1])
-        if abs(float(more.chi[-1])) < REACHED and _exponential(more.chi):
-            return more, (*LEVELS[2:], *PEAKED)
-    return moments, LEVELS[_first(moments.chi) :]
+def levels_for(phases: Sequence[PhaseFunction]) -> tuple[list[LayerMoments], tuple[int, ...]]:
+    """Return the moments of phase functions and the levels worth a solution of all of them together, the coarsest first."""
+    moments = [phase_moments(phase) for phase in phases]
+    peaked = [phase for phase, its in zip(phases, moments, strict=True) if abs(float(its.chi[-1])) > CUT]
+    if peaked and all(_tamed(phase) for phase in peaked):
+        return [phase_moments(phase, PEAKED[-1]) for phase in phases], (*LEVELS[2:], *PEAKED)
+    return moments, LEVELS[
+        min(_first(its.chi) for its in moments) if peaked else max(_first(its.chi) for its in moments) :
+    ]
+
+
+def _tamed(phase: PhaseFunction) -> bool:
+    """Return whether moments fall exponentially, and the finest level meets the last that matters."""
+    more = phase_moments(phase, PEAKED[-1])
+    return _exponential(phase_moments(phase).chi) and abs(float(more.chi[-1])) < REACHED and _exponential(more.chi)
 
 
 def _exponential(chi: np.ndarray) -> bool:
@@ -121,7 +129,7 @@ def doubled_values(
     c: np.ndarray, tau: np.ndarray, mu0: np.ndarray | None, phase: PhaseFunction, quantity: Quantity
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the quantity and its error for albedos, thicknesses and cosines (v,); for diffuse light if mu0 is None."""
-    moments, levels = _levels(phase)
+    (moments,), levels = levels_for([phase])
     whole, tau = tau, np.minimum(tau, DEEPEST)
     beam, mu0 = mu0, None if mu0 is None else seen_at(mu0, tau)
     pairs, which = np.unique(np.stack([c, tau], axis=1), axis=0, return_inverse=True)
@@ -130,7 +138,7 @@ def doubled_values(
     todo = np.arange(len(c))
     before: list[tuple[int, np.ndarray]] = []
     falls = len(moments.chi) > MOMENTS * LEVELS[-1] + 1
-    slow = not falls and _slow(moments.chi)
+    slow = not falls and decays_slowly(moments.chi)
     with np.errstate(under="ignore"):
         for n in levels:
             if not len(todo):

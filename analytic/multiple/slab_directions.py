@@ -14,10 +14,11 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
-from fogproof.analytic.multiple.doubling import SIDE, ScatteringLayer, layer
+from fogproof.analytic.geometry.turning import turning
+from fogproof.analytic.multiple.doubling import layer
 from fogproof.analytic.multiple.mode_integrals import FARTHEST
 from fogproof.analytic.multiple.scattering_arguments import seen_at
-from fogproof.analytic.multiple.scattering_kernel import Scaled, associated_legendre, scaled
+from fogproof.analytic.multiple.scattering_kernel import Scaled, fourier_medium, scaled
 from fogproof.analytic.multiple.slab_by_doubling import LEVELS, MOMENTS, phase_moments
 from fogproof.analytic.multiple.slab_modes import quadrature
 from fogproof.analytic.phase.functions import phase_values
@@ -38,6 +39,10 @@ ENOUGH = 1e-11
 ROUNDING = 256 * EPS
 
 
+VIEWS = 24
+"""Pairs of directions evaluated at a time where the phase function is not isotropic."""
+
+
 class Beams(NamedTuple):
     """Cosines of what comes in and of what goes out, and the azimuth between their ways on, (v,) each."""
 
@@ -49,7 +54,7 @@ class Beams(NamedTuple):
 def directional(c: float, tau: float, beams: Beams, phase: PhaseFunction, side: Side) -> tuple[np.ndarray, np.ndarray]:
     """Return radiance per irradiance [1/sr] for one slab of albedo c > 0 and thickness tau > 0, and its error, (v,)."""
     moments = phase_moments(phase)
-    single, its_error = _once(c, beams, phase, side)
+    single, its_error = scattered_once(c, beams, phase, side)
     before = None
     found = error = np.zeros_like(single)
     with np.errstate(under="ignore"):
@@ -57,7 +62,7 @@ def directional(c: float, tau: float, beams: Beams, phase: PhaseFunction, side: 
             slab = scaled(np.array([c]), np.array([tau]), moments.chi[: MOMENTS * n + 1])
             once = (
                 single
-                * _gain(float(slab.tau[0]), beams.mu0, beams.mu, side)
+                * single_gain(float(slab.tau[0]), beams.mu0, beams.mu, side)
                 / (1 - c * float(moments.chi[MOMENTS * n]))
             )
             more = _many_times(slab, beams, side, n, once)
@@ -77,15 +82,22 @@ def directional(c: float, tau: float, beams: Beams, phase: PhaseFunction, side: 
     return found, error + 2 * TINY
 
 
-def _once(c: float, beams: Beams, phase: PhaseFunction, side: Side) -> tuple[np.ndarray, np.ndarray]:
+def directional_in_parts(
+    c: float, tau: float, beams: Beams, phase: PhaseFunction, side: Side
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the same for any number of pairs of directions, a few at a time."""
+    pairs, which = np.unique(np.stack([beams.mu0, beams.mu]), axis=1, return_inverse=True)
+    value, error = np.zeros_like(beams.mu), np.zeros_like(beams.mu)
+    for first in range(0, pairs.shape[1], VIEWS):
+        some = (which.ravel() >= first) & (which.ravel() < first + VIEWS)
+        value[some], error[some] = directional(c, tau, Beams(*(x[some] for x in beams)), phase, side)
+    return value, error
+
+
+def scattered_once(c: float, beams: Beams, phase: PhaseFunction, side: Side) -> tuple[np.ndarray, np.ndarray]:
     """Return c f_p [1/sr] between the two directions, and its error; nothing cancels near the forward direction."""
     mu0, mu, azimuth = beams
-    s0, s = np.sqrt((1 - mu0) * (1 + mu0)), np.sqrt((1 - mu) * (1 + mu))
-    across = np.square(np.divide((mu0 - mu) * (mu0 + mu), s + s0, out=np.zeros_like(s), where=s + s0 > 0))
-    near, far = (np.square(mu - mu0) + across) / 4, (np.square(mu + mu0) + across) / 4
-    x, y = near + s * s0 * np.sin(azimuth / 2) ** 2, far + s * s0 * np.cos(azimuth / 2) ** 2
-    if side == "reflected":
-        x, y = far + s * s0 * np.sin(azimuth / 2) ** 2, near + s * s0 * np.cos(azimuth / 2) ** 2
+    x, y = turning(mu0, mu, azimuth, turns_back=side == "reflected")
     cosine = y - x
     density, error = phase_values(phase, cosine, x, y)
     # What the cosine is rounded by: the change of f_p over 4 eps on either side.
@@ -94,7 +106,7 @@ def _once(c: float, beams: Beams, phase: PhaseFunction, side: Side) -> tuple[np.
     return c * density, c * (error + 32 * EPS * density)
 
 
-def _gain(tau: float, mu0: np.ndarray, mu: np.ndarray, side: Side) -> np.ndarray:
+def single_gain(tau: float, mu0: np.ndarray, mu: np.ndarray, side: Side) -> np.ndarray:
     """Return int_0^tau exp(-x/mu0 - (x or tau - x)/mu) dx / (mu mu0)."""
     if side == "reflected":
         return -np.expm1(-tau * (1 / mu + 1 / mu0)) / (mu + mu0)
@@ -117,35 +129,16 @@ def _many_times(slab: Scaled, beams: Beams, side: Side, n: int, once: np.ndarray
     highest = int(np.flatnonzero(slab.chi)[-1])  # azimuth modes beyond the last moment are zero
     for first in range(0, highest + 1, MODES):
         orders = np.arange(first, min(first + MODES, highest + 1))
-        between = _medium(slab, mu, w, cosines, orders)
+        between = fourier_medium(slab, mu, w, cosines, orders)
         found = layer(between, np.full(len(orders), tau))
         matrix = found.R if side == "reflected" else found.T
         kernel = between.backward if side == "reflected" else between.forward
         root = np.sqrt(2 * between.mu * between.w)[count:]
         aside = matrix[:, count:, count:] / (root[:, None] * root)
-        single = kernel[:, count:, count:] / 2 * _gain(tau, cosines[:, None], cosines, side)
+        single = kernel[:, count:, count:] / 2 * single_gain(tau, cosines[:, None], cosines, side)
         part = (aside - single)[:, goes, came]
         twice = np.where(orders == 0, 1.0, 2.0)[:, None] * np.cos(orders[:, None] * beams.azimuth)
         total += np.sum(part * twice, axis=0)
         if np.all(np.abs(part[-1]) <= SEEN * (np.abs(total) + np.pi * once)):
             break
     return total / np.pi
-
-
-def _medium(slab: Scaled, mu: np.ndarray, w: np.ndarray, aside: np.ndarray, orders: np.ndarray) -> ScatteringLayer:
-    """Return the scattering in Fourier modes `orders` at nodes and at directions aside."""
-    n = len(mu)
-    every, last = np.concatenate([mu, aside]), len(slab.chi) - 1
-    forward, backward = np.empty((2, len(orders), len(every), len(every)))
-    sign = (-1.0) ** np.arange(last + 1)
-    for i, m in enumerate(orders.tolist()):
-        P = associated_legendre(m, last, every)
-        if m == 0:
-            P[2::2] -= (P[2::2, :n] @ w)[:, None] / np.sum(w)
-        weighted = ((2 * np.arange(last + 1) + 1) * slab.chi)[m:, None] * P[m:]
-        forward[i] = P[m:].T @ weighted
-        backward[i] = (P[m:] * (sign[m:] * (-1) ** m)[:, None]).T @ weighted
-    half = float(slab.albedo[0]) / 2
-    weights = np.concatenate([w / np.sum(w), np.full(len(aside), SIDE)])
-    absorbed = np.full(len(orders), slab.absorbed[0])
-    return ScatteringLayer(every, weights, half * forward, half * backward, absorbed, orders == 0)

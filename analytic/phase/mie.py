@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -81,16 +82,20 @@ def mean_cosine(phase: Mie) -> tuple[float, float]:
 def airlight(phase: Mie) -> AirlightPhase:
     """Return 4 pi f of the Lorenz-Mie series: a polynomial in mu, bounded and differentiated on a fine grid of angles."""
     size = math.pi * phase.diameter * phase.medium_index / phase.wavelength
-    degree = 2 * math.ceil(size + 8 * size ** (1 / 3) + 5)
+    return airlight_of_series(lambda mu: pdf(phase, mu), 2 * _order(size))
+
+
+def airlight_of_series(density: Callable[[Array], tuple[Array, Array]], degree: int) -> AirlightPhase:
+    """Return 4 pi f of a polynomial in mu of some degree, from cosines (n,) -> its values [1/sr] and their errors."""
     theta = np.linspace(0, np.pi, 8 * degree + 1)
-    F, noise = (4 * np.pi * x for x in pdf(phase, np.cos(theta)))
+    F, noise = (4 * np.pi * x for x in density(np.cos(theta)))
     # Between samples 8 times denser than the polynomial oscillates, neither F nor its slope grows by more than a tenth.
     steep = 1.1 * np.abs(np.diff(F)) / np.diff(theta)
     upto, beyond = np.maximum.accumulate(steep), np.maximum.accumulate(steep[::-1])[::-1]
 
     def factor(w: Array, wt: Array) -> tuple[Array, Array]:
         mu = (wt - w) / (wt + w)
-        value, error = pdf(phase, mu.ravel())
+        value, error = density(mu.ravel())
         blur = 4 * EPS * np.interp(np.arccos(mu), theta[1:], steep)
         return 4 * np.pi * value.reshape(mu.shape), 4 * np.pi * error.reshape(mu.shape) + blur
 
@@ -118,13 +123,24 @@ def _series(phase: Mie) -> MieSeries:
             f"{x:.6g}; smaller spheres scatter as Rayleigh(), larger ones by geometrical optics",
             "phase",
         )
-    # Wiscombe's count, widened until what is left out is far below rounding (it was made for an error of 1e-6).
-    order = math.ceil(x + 8 * x ** (1 / 3) + 5)
+    order = _order(x)
     start = _starting_order(abs(m) * x, x, order)
     spheres = ((m, x, start), (m, x * (1 + STEP), start), (m * (1 + STEP), x, start), (m, x, start + 1))
     a, b = np.array([[series[:order] for series in _coefficients(*sphere)] for sphere in spheres]).swapaxes(0, 1)
     # Measured: the recurrences drift like sqrt(N), and a_n loses digits when it is small because m is close to 1.
     return MieSeries(a, b, 3 * EPS * (math.sqrt(order) + 1 + 1 / (abs(m - 1) * max(1, x**0.5))))
+
+
+def coefficients(m: complex, x: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return a_n and b_n of one sphere with the relative index m, for n = 1 … as far as they count."""
+    order = _order(x)
+    a, b = _coefficients(m, x, _starting_order(abs(m) * x, x, order))
+    return a[:order], b[:order]
+
+
+def _order(x: float) -> int:
+    """Return Wiscombe's count, widened until what is left out is far below rounding (it was made for an error of 1e-6)."""
+    return math.ceil(x + 8 * x ** (1 / 3) + 5)
 
 
 def _starting_order(z: float, x: float, order: int) -> int:

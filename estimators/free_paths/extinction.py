@@ -99,14 +99,18 @@ class Linear:
         return s * (max(self.sigma_0, 0.0) + 0.5 * self.slope * s)
 
     def reach(self, depth: np.ndarray) -> np.ndarray:
-        """Return the distance: 2 depth/(sigma_0 + sqrt(sigma_0^2 + 2 slope depth)) after the vacuum, whatever the slope's sign."""
+        """Return the distance: 2 depth/(sigma_0 + sqrt(sigma_0^2 + 2 slope depth)) after the vacuum, whatever the slope's sign.
+
+        The square root is that of a product of sums of roots, which neither overflows nor underflows.
+        """
         base = max(self.sigma_0, 0.0)
         if self._vacuum:
             return np.full_like(depth, np.inf)
-        square = base * base + 2 * self.slope * depth
-        whole = base + np.sqrt(np.maximum(square, 0))
+        bent = np.sqrt(2 * abs(self.slope)) * np.sqrt(depth)
+        root = np.hypot(base, bent) if self.slope > 0 else np.sqrt(np.maximum(base - bent, 0)) * np.sqrt(base + bent)
+        whole = base + root
         run = np.divide(2 * depth, whole, out=np.zeros_like(depth), where=whole > 0)
-        return np.where(square >= 0, self._start + run, np.inf)
+        return self._start + run if self.slope > 0 else np.where(bent <= base, run, np.inf)
 
 
 @dataclass(frozen=True)

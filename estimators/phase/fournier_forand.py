@@ -11,6 +11,8 @@ delta = 1, where both are 0/0, powers of 1 - delta take over.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from fogproof.estimators.phase.polar import Polar
@@ -61,41 +63,80 @@ def density(phase: FournierForand, versine: np.ndarray, coversine: np.ndarray) -
     return np.where(versine > 0, value / (4 * np.pi), np.inf).astype(versine.dtype)
 
 
-def _share(phase: FournierForand, s: np.ndarray) -> np.ndarray:
-    """Return the share of light that scatters less than the angle with sin^2(angle/2) = s."""
+def _within(phase: FournierForand, s: np.ndarray, rest: np.ndarray) -> np.ndarray:
+    """Return the share of light that scatters less than the angle with sin^2(angle/2) = s; rest = 1 - s."""
     nu, k, last = _constants(phase)
     delta = k * s
     series = np.abs(1 - delta) < SERIES
     one = np.where(series, 2.0, delta)
-    value = (one**-nu * (1 - s) - one + s) / (1 - one)
+    value = (one**-nu * rest - one + s) / (1 - one)
     if series.any():
         inner = np.polynomial.polynomial.polyval(delta[series] - 1, _binomials(nu))
-        value[series] = 1 - (1 - s[series]) * inner
-    return value + last / 2 * (1 - 2 * s) * s * (1 - s)
+        value[series] = 1 - rest[series] * inner
+    return value + last / 2 * (1 - 2 * s) * s * rest
+
+
+def _beyond(phase: FournierForand, s: np.ndarray, rest: np.ndarray) -> np.ndarray:
+    """Return the share that scatters more: 1 less the other, with rest as a factor."""
+    nu, k, last = _constants(phase)
+    delta = k * s
+    series = np.abs(1 - delta) < SERIES
+    one = np.where(series, 2.0, delta)
+    inner = (1 - one**-nu) / (1 - one)
+    if series.any():
+        inner[series] = np.polynomial.polynomial.polyval(delta[series] - 1, _binomials(nu))
+    return rest * (inner - last / 2 * (1 - 2 * s) * s)
 
 
 def polar(phase: FournierForand, xi: np.ndarray) -> Polar:
-    """Return scattering angles and their pdf: Newton's method in log s, kept between bounds."""
+    """Return scattering angles and their pdf.
+
+    The unknown is log s where less than half of the light scatters less, else log(1 - s): so either pole keeps its digits.
+    """
     nu, k, _ = _constants(phase)
-    target = 1 - xi.astype(np.float64)
+    wanted = xi.astype(np.float64)
+    forward = wanted >= 0.5
+    s, rest = np.empty((2, len(xi)))
     with np.errstate(under="ignore", divide="ignore"):
+        target = 1 - wanted[forward]
         start = np.clip(np.log(target) / -nu - np.log(k), np.log(SMALLEST), 0.0)
+        t = _root(lambda t: _near(phase, t, _within), target, start)
+        s[forward], rest[forward] = np.exp(t), -np.expm1(t)
+        target = wanted[~forward]
+        at_pole = 4 * np.pi * density(phase, np.array([2.0]), np.array([0.0]))
+        t = _root(lambda t: _near(phase, t, _beyond), target, np.clip(np.log(target / at_pole), np.log(SMALLEST), 0.0))
+        rest[~forward], s[~forward] = np.where(target > 0, np.exp(t), 0.0), -np.expm1(t)
+    versine = np.maximum(2 * s, np.finfo(xi.dtype).tiny)
+    at_angle = versine.astype(xi.dtype), (2 * rest).astype(xi.dtype)
+    return Polar(*at_angle, density(phase, *at_angle))
+
+
+Share = Callable[[FournierForand, np.ndarray, np.ndarray], np.ndarray]
+
+
+def _near(phase: FournierForand, t: np.ndarray, share: Share) -> tuple[np.ndarray, np.ndarray]:
+    """Return a share and its derivative in t, the logarithm of what lies between the direction and the pole it counts from."""
+    near, far = np.exp(t), -np.expm1(t)
+    s, rest = (near, far) if share is _within else (far, near)
+    return share(phase, s, rest), 4 * np.pi * near * density(phase, 2 * s, 2 * rest)
+
+
+def _root(
+    share: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]], target: np.ndarray, start: np.ndarray
+) -> np.ndarray:
+    """Return t in [log SMALLEST, 0] at which a rising share is the target: Newton's method, kept between bounds."""
     low, high = np.maximum(start - 40.0, np.log(SMALLEST)), np.zeros_like(start)
-    low = np.where(_share(phase, np.exp(low)) < target, low, np.log(SMALLEST))
+    low = np.where(share(low)[0] < target, low, np.log(SMALLEST))
     t, left = start, np.arange(len(start))
     for _ in range(MOST_STEPS):
         at = t[left]
-        s = np.exp(at)
-        off = _share(phase, s) - target[left]
+        value, slope = share(at)
+        off = value - target[left]
         low[left], high[left] = np.where(off < 0, at, low[left]), np.where(off < 0, high[left], at)
-        slope = 4 * np.pi * s * density(phase, 2 * s, 2 * (1 - s))
         step = at - off / slope
         step = np.where((step > low[left]) & (step < high[left]), step, 0.5 * (low[left] + high[left]))
         t[left] = step
         left = left[np.abs(step - at) > 1e-15 * np.maximum(np.abs(at), 1.0)]
         if len(left) == 0:
             break
-    versine, coversine = 2 * np.exp(t), -2 * np.expm1(np.minimum(t, -SMALLEST))
-    versine = np.maximum(versine, np.finfo(xi.dtype).tiny)
-    at_angle = versine.astype(xi.dtype), coversine.astype(xi.dtype)
-    return Polar(*at_angle, density(phase, *at_angle))
+    return t

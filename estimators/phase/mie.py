@@ -40,14 +40,14 @@ def polar(phase: Mie, xi: np.ndarray) -> Polar:
 @lru_cache(maxsize=16)
 def table(phase: Mie) -> Tabulated:
     """Return the table that directions are drawn from, nodes at equal angles."""
-    a, _ = _coefficients(phase)
+    a, _ = coefficients(phase)
     mu = -np.cos(np.linspace(0, np.pi, _NODES_PER_ORDER * len(a) + 1))
     mu[0], mu[-1] = -1, 1
     return Tabulated.normalised(mu, _intensity(phase, mu))
 
 
 @lru_cache(maxsize=16)
-def _coefficients(phase: Mie) -> tuple[np.ndarray, np.ndarray]:
+def coefficients(phase: Mie) -> tuple[np.ndarray, np.ndarray]:
     """Return a_n, b_n for n = 1 … N (their eq. 4.88): logarithmic derivatives downwards, spherical Bessel functions of x."""
     from scipy.special import spherical_jn, spherical_yn
 
@@ -75,7 +75,7 @@ def _coefficients(phase: Mie) -> tuple[np.ndarray, np.ndarray]:
 
 def _intensity(phase: Mie, mu: np.ndarray) -> np.ndarray:
     """Return (|S1|^2 + |S2|^2)/2 divided by its integral over the sphere, at cosines mu (n,)."""
-    a, b = _coefficients(phase)
+    a, b = coefficients(phase)
     mu = mu.astype(np.float64)
     S1, S2 = np.zeros((2, *mu.shape), complex)
     before, pi = np.zeros_like(mu), np.ones_like(mu)

@@ -18,6 +18,7 @@ from fogproof.reports.pages.summaries import blind, by_cause, catches, needs, pl
 from fogproof.reports.pages.templates import cases as some_cases
 from fogproof.reports.pages.templates import fill
 from fogproof.reports.records.runs import Case, RunRecord, Status
+from fogproof.reports.records.stability import stability_beside
 from fogproof.reports.text import file_stem
 
 INLINE_BYTES = 5_000_000
@@ -75,6 +76,7 @@ def write_page(run: RunRecord, folder: str | Path) -> Path:
         catches=catches(run),
         needs=needs(run.cases),
         known=[case for case in cases if case.expected == "rejected"],
+        stability=stability_beside(folder),
         headline=headline(run),
         tone=_tone(run),
     )

@@ -16,12 +16,14 @@ from fogproof.contracts import Draw, Draws, Estimator, Reference, Sampler
 from fogproof.domains import *  # noqa: F403
 from fogproof.errors import FogproofError, InvalidValueError, UnsupportedError
 from fogproof.scene import cameras as _cameras
+from fogproof.scene import grounds as _grounds
 from fogproof.scene import lights as _lights
 from fogproof.scene import media as _media
 from fogproof.scene import occluders as _occluders
 from fogproof.scene import phase as _phase
 from fogproof.scene import surfaces as _surfaces
 from fogproof.scene.cameras import *  # noqa: F403
+from fogproof.scene.grounds import *  # noqa: F403
 from fogproof.scene.image_scenes import ImageScene
 from fogproof.scene.lights import *  # noqa: F403
 from fogproof.scene.media import *  # noqa: F403
@@ -30,6 +32,7 @@ from fogproof.scene.phase import *  # noqa: F403
 from fogproof.scene.rays import Ray
 from fogproof.scene.scenes import Scattering, Scene
 from fogproof.scene.shapes import HalfSpace, Shape, Slab, Unbounded
+from fogproof.scene.slab_layers import SlabLayer
 from fogproof.scene.surfaces import *  # noqa: F403
 
 if TYPE_CHECKING:
@@ -61,6 +64,7 @@ __all__ = [
     "Scene",
     "Shape",
     "Slab",
+    "SlabLayer",
     "Unbounded",
     "UnsupportedError",
     "check_gradient",
@@ -75,6 +79,7 @@ __all__ = [
 __all__ += _cameras.__all__
 __all__ += _checks.__all__
 __all__ += _domains.__all__
+__all__ += _grounds.__all__
 __all__ += _lights.__all__
 __all__ += _media.__all__
 __all__ += _occluders.__all__

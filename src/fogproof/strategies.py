@@ -32,7 +32,7 @@ from fogproof.scene import Ray, Scene
 from fogproof.scene.lights import KINDS as LIGHTS
 from fogproof.scene.media import KINDS as MEDIA
 from fogproof.scene.phase import KINDS as PHASES
-from fogproof.scene.phase import Mixture, PhaseFunction, Tabulated
+from fogproof.scene.phase import LegendreSeries, Mixture, PhaseFunction, Tabulated
 from fogproof.scene.shapes import KINDS as SHAPES
 
 __all__ = ["lights", "media", "phase_functions", "rays", "scenes", "shapes"]
@@ -78,6 +78,7 @@ FIELDS: dict[str, st.SearchStrategy[Any]] = {
     **dict.fromkeys(("sigma_a", "sigma_s", "sigma_0", "sigma", "density"), _numbers(0, 2)),
     **dict.fromkeys(("albedo", "weight"), _share),
     "alpha": _numbers(0, 5),
+    "kappa": _numbers(-20, 20),
     "gradient": st.tuples(*3 * [_numbers(-1, 1)]),
     "rate": st.tuples(*3 * [_numbers(-1, 1)]),
     "phase": st.deferred(lambda: phase_functions()),
@@ -157,9 +158,22 @@ def _sphere(draw: st.DrawFn) -> dict[str, Any]:
     }
 
 
+def _spheres(draw: st.DrawFn) -> dict[str, Any]:
+    one = _sphere(draw)
+    return {
+        "distribution": draw(st.sampled_from(["gamma", "log-normal"])),
+        "effective_diameter": one.pop("diameter") / 4,
+        "effective_variance": draw(st.floats(0.01, 0.2)),
+        **one,
+    }
+
+
 OWN: dict[str, Any] = {
     "spot": _spot,
     "rectangle": _rectangle,
+    "environment-map": lambda draw: {
+        "image": np.array(draw(st.lists(st.tuples(*4 * [_share]), min_size=2, max_size=2)))
+    },
     "box": _box,
     "piecewise-constant": _layers,
     "voxel-grid": _voxels,
@@ -167,6 +181,11 @@ OWN: dict[str, Any] = {
     "opengl-fog": _fog,
     "gaussian-puffs": _puffs,
     "mie": _sphere,
+    "polydisperse-mie": _spheres,
+    "approximate-mie": lambda draw: {"diameter": draw(st.floats(1e-8, 50e-6))},
+    "legendre-series": lambda draw: {
+        "moments": LegendreSeries((1.0, *draw(st.tuples(*(st.floats(-r, r) for r in (0.12, 0.08, 0.05)))))).moments
+    },
     "fournier-forand": lambda draw: {
         "refractive_index": draw(st.floats(1.02, 1.35)),
         "junge_slope": draw(st.floats(3.2, 4.8)),

@@ -15,6 +15,7 @@ ROOT = Path(__file__).parents[2]
 
 NOT_PROVEN = {
     "mie": "a series whose coefficients come from a program without error bounds",
+    "polydisperse-mie": "the same, many times",
     "tabulated": "no formula: ball arithmetic would have to cut integrals at every cosine",
 }
 """Kinds without `ball` and `peak`."""

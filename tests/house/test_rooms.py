@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-ROOMS = ("media", "lights", "shapes", "occluders")
+ROOMS = ("media", "lights", "shapes", "occluders", "grounds")
 KINDS = {
     name: {kind.__name__: kind for kind in import_module(f"fogproof.scene.{name}").KINDS.values()} for name in ROOMS
 }

@@ -27,7 +27,7 @@ from fogproof.contracts import Draws, Reference
 from fogproof.estimators import (
     PathTracer,
 )
-from fogproof.scene import Medium
+from fogproof.scene import HenyeyGreenstein, Medium
 from fogproof.scene.shapes import HalfSpace
 from fogproof.scene.surfaces import Plane, Surface
 
@@ -68,6 +68,16 @@ def cases() -> list[EstimatorCase]:
             oracle="half_space_reflectance",
             error="the half space ends one mean free path down",
             twin=lambda: PathTracer(dim, SLAB, ABOVE, SKY, BLACK, light_sampling="bsdf"),
+        ),
+        paths_case(
+            name="half-space/forward",
+            title="Half space that scatters forwards, lit by the sun",
+            make=lambda: PathTracer(Medium(0.1, 0.9, HenyeyGreenstein(0.5)), half_space, ABOVE, SUNLIGHT),
+            reference=lambda: times(analytic.half_space_brdf(0.9, SUN, VIEW, HenyeyGreenstein(0.5), np.pi), SUN),
+            oracle="half_space_brdf",
+            error="scattering is isotropic",
+            twin=lambda: PathTracer(Medium(0.1, 0.9), half_space, ABOVE, SUNLIGHT),
+            source=NEXT_EVENT,
         ),
         paths_case(
             name="half-space/sun",

@@ -54,6 +54,16 @@ def cases() -> list[EstimatorCase]:
             source="Case, de Hoffmann & Placzek 1953",
         ),
         paths_case(
+            name="walks/point-source-forward",
+            title="Collisions around a point source where scattering goes forwards",
+            make=lambda: PointSourceWalks(0.9, radii, lobe),
+            reference=lambda: analytic.point_source_collisions(0.9, np.array(radii), lobe),
+            oracle="point_source_collisions",
+            error="scattering is isotropic",
+            twin=lambda: PointSourceWalks(0.9, radii),
+            source="McCormick & Kuscer 1966",
+        ),
+        paths_case(
             name="walks/rod",
             title="What comes back from a rod, and what passes it",
             make=lambda: RodWalks(0.9, 2.0, 0.5),

@@ -6,6 +6,7 @@ from typing import Annotated, Any
 
 from fogproof.errors import InvalidValueError
 from fogproof.scene.kinds import ByKind
+from fogproof.scene.phase.approximate_mie import ApproximateMie
 from fogproof.scene.phase.cornette_shanks import CornetteShanks
 from fogproof.scene.phase.double_henyey_greenstein import DoubleHenyeyGreenstein
 from fogproof.scene.phase.draine import Draine
@@ -13,16 +14,19 @@ from fogproof.scene.phase.fournier_forand import FournierForand
 from fogproof.scene.phase.hazy import Hazy
 from fogproof.scene.phase.henyey_greenstein import HenyeyGreenstein
 from fogproof.scene.phase.isotropic import Isotropic
+from fogproof.scene.phase.legendre_series import LegendreSeries
 from fogproof.scene.phase.mie import Mie
 from fogproof.scene.phase.mixture import Mixture
 from fogproof.scene.phase.murky import Murky
 from fogproof.scene.phase.phase_function import PhaseFunction
 from fogproof.scene.phase.phase_function import PhaseFunctionField as PhaseFunctionField
 from fogproof.scene.phase.phase_function import require_phase as require_phase
+from fogproof.scene.phase.polydisperse_mie import PolydisperseMie
 from fogproof.scene.phase.rayleigh import Rayleigh
 from fogproof.scene.phase.schlick import Schlick
 from fogproof.scene.phase.tabulated import Tabulated
 from fogproof.scene.phase.varying import Ramp, VaryingPhase
+from fogproof.scene.phase.von_mises_fisher import VonMisesFisher
 
 KINDS: dict[str, type[PhaseFunction]] = {
     "isotropic": Isotropic,
@@ -35,7 +39,11 @@ KINDS: dict[str, type[PhaseFunction]] = {
     "cornette-shanks": CornetteShanks,
     "draine": Draine,
     "fournier-forand": FournierForand,
+    "von-mises-fisher": VonMisesFisher,
     "mie": Mie,
+    "polydisperse-mie": PolydisperseMie,
+    "approximate-mie": ApproximateMie,
+    "legendre-series": LegendreSeries,
     "tabulated": Tabulated,
     "mixture": Mixture,
 }
@@ -58,6 +66,7 @@ def constant_phase(phase: AnyPhase) -> PhaseFunction | None:
 
 
 __all__ = [
+    "ApproximateMie",
     "CornetteShanks",
     "DoubleHenyeyGreenstein",
     "Draine",
@@ -65,13 +74,16 @@ __all__ = [
     "Hazy",
     "HenyeyGreenstein",
     "Isotropic",
+    "LegendreSeries",
     "Mie",
     "Mixture",
     "Murky",
     "PhaseFunction",
+    "PolydisperseMie",
     "Ramp",
     "Rayleigh",
     "Schlick",
     "Tabulated",
     "VaryingPhase",
+    "VonMisesFisher",
 ]
