@@ -82,7 +82,7 @@ def run_relations(scenes: Sequence[Path], run: RelationRun, folder: Path) -> Ite
         started = time.perf_counter()
         try:
             for relation in image_relations(scene, battery, wanted) if wanted else ():
-                row = _told(path.stem, relation, time.perf_counter() - started)
+                row = _row_of(path.stem, relation, time.perf_counter() - started)
                 started = time.perf_counter()
                 yield row
         except RenderError as error:
@@ -152,7 +152,7 @@ def write_record(rows: Sequence[dict[str, Any]], run: RelationRun, folder: Path)
     return write_relations_page(rows, run.renderer.name, folder)
 
 
-def _told(scene: str, relation: ImageRelation, seconds: float) -> dict[str, Any]:
+def _row_of(scene: str, relation: ImageRelation, seconds: float) -> dict[str, Any]:
     row = _row(scene, relation.name, relation.isolates, relation.outcome, relation.reason)
     row |= {"first": relation.first, "second": relation.second, "seconds": f"{seconds:.1f}"}
     verdict = relation.verdict

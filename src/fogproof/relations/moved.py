@@ -9,7 +9,6 @@ from typing import Any, TypeVar
 import numpy as np
 
 from fogproof.errors import UnsupportedError
-from fogproof.scene.phase import PhaseFunction
 
 FIELDS = {
     "point": "position center centers point corner lower upper origin target start end",
@@ -25,6 +24,9 @@ FIELDS = {
     " light_sampling deepest only integrator threads more copy",
 }
 """What the fields are that carry a name; "" are those that neither place nor unit of length changes. Others are refused."""
+
+PHASES = ("phase", "first", "second")
+"""Of angles alone, unless one varies in space."""
 
 WHAT = {name: what for what, names in FIELDS.items() for name in names.split()}
 
@@ -89,7 +91,7 @@ def changed(thing: Setting, change: Change) -> Setting:
     changes: dict[str, Any] = {}
     for field in dataclasses.fields(data):
         value = getattr(data, field.name)
-        if not field.init or value is None or isinstance(value, PhaseFunction):
+        if not field.init or value is None or (field.name in PHASES and not hasattr(value, "share")):
             continue
         if dataclasses.is_dataclass(value):
             if field.name != "film":
