@@ -79,6 +79,11 @@ from fogproof.analytic.variance.transmittance import (
     transmittance_second_moment,
     transmittance_variance,
 )
+from fogproof.analytic.variance.voxel_estimates import (
+    voxel_estimate_cost,
+    voxel_estimate_mean,
+    voxel_estimate_variance,
+)
 
 __all__ = [
     "Coefficients",
@@ -159,5 +164,8 @@ __all__ = [
     "transmittance_lookups",
     "transmittance_second_moment",
     "transmittance_variance",
+    "voxel_estimate_cost",
+    "voxel_estimate_mean",
+    "voxel_estimate_variance",
     "white_furnace",
 ]

@@ -19,13 +19,20 @@ from fogproof.estimators.paths.tracer import PathTracer, Roulette
 from fogproof.estimators.phase.directions import Cosines, Directions
 from fogproof.estimators.phase.functions import phase_table, phase_value
 from fogproof.estimators.tracking.compiled import CompiledField
+from fogproof.estimators.tracking.decomposition import DecompositionTransmittance
 from fogproof.estimators.tracking.delta import DeltaFreePath, DeltaTransmittance, delta_tracking
+from fogproof.estimators.tracking.jittered_marching import JitteredMarch
 from fogproof.estimators.tracking.majorant_grid import MajorantGrid
 from fogproof.estimators.tracking.marching import MarchedFreePath, MarchedTransmittance, RayMarch, feature_size
+from fogproof.estimators.tracking.next_flight import NextFlightTransmittance
 from fogproof.estimators.tracking.noise import FractalNoise
+from fogproof.estimators.tracking.power_series import PowerSeriesTransmittance
 from fogproof.estimators.tracking.ratio import RatioTransmittance, ResidualRatioTransmittance, ratio_tracking
 from fogproof.estimators.tracking.regular import RegularFreePath, RegularTransmittance, regular_tracking
 from fogproof.estimators.tracking.spectral import SpectralFog, SpectralFreePath, spectral_tracking
+from fogproof.estimators.tracking.telescoping import TelescopingTransmittance
+from fogproof.estimators.tracking.unbiased_marching import UnbiasedMarch
+from fogproof.estimators.tracking.weighted import WeightedTransmittance
 
 __all__ = [
     "Airlight",
@@ -36,6 +43,7 @@ __all__ = [
     "CompiledField",
     "Constant",
     "Cosines",
+    "DecompositionTransmittance",
     "DecoupledAirlight",
     "DeltaFreePath",
     "DeltaTransmittance",
@@ -47,6 +55,7 @@ __all__ = [
     "FreePath",
     "HomogeneousSpectralFog",
     "HomogeneousSpectralFreePath",
+    "JitteredMarch",
     "LayeredWalks",
     "Linear",
     "LitMedium",
@@ -54,8 +63,10 @@ __all__ = [
     "MarchedAirlight",
     "MarchedFreePath",
     "MarchedTransmittance",
+    "NextFlightTransmittance",
     "PathTracer",
     "PointSourceWalks",
+    "PowerSeriesTransmittance",
     "RandomFlights",
     "RatioTransmittance",
     "RayMarch",
@@ -69,9 +80,12 @@ __all__ = [
     "SpectralFreePath",
     "SpectralPathTracer",
     "SpectralTransmittance",
+    "TelescopingTransmittance",
     "TruncatedFreePath",
+    "UnbiasedMarch",
     "UniformEmission",
     "Vanishing",
+    "WeightedTransmittance",
     "along",
     "delta_tracking",
     "feature_size",

@@ -89,7 +89,8 @@ class PValueHistogram:
         axes.stairs(counts, edges, OBSERVED, fill=True)
         axes.line([0, 1], [n * share, n * share], EXPECTED, DASHED)
         outside = int(np.sum((counts < low) | (counts > high)))
+        lie = "1 bin lies" if outside == 1 else f"{outside} bins lie"
         return (
             f"Histogram of {n} p-values that are uniform for right subjects: {n * share:.1f} are expected in each of {self.bins} "
-            f"bins, {counts.min()} to {counts.max()} are there; {outside} bins lie outside the range of 99.9%."
+            f"bins, {counts.min()} to {counts.max()} are there; {lie} outside the range of 99.9%."
         )

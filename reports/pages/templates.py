@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from fogproof.reports.text import anchor, label
 from fogproof.text import duration as in_words
-from fogproof.text import visible
+from fogproof.text import p_value, visible
 
 if TYPE_CHECKING:
     import jinja2
@@ -46,6 +46,7 @@ def _environment() -> jinja2.Environment:
         "anchor": anchor,
         "label": label,
         "number": number,
+        "p_value": lambda p: "–" if p is None else p_value(p),
         "grouped": grouped,
         "sentence": sentence,
         "cases": cases,

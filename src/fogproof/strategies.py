@@ -182,6 +182,9 @@ OWN: dict[str, Any] = {
     "composite": _several,
     "spot": _spot,
     "rectangle": _rectangle,
+    "environment-map": lambda draw: {
+        "image": np.array(draw(st.lists(st.tuples(*4 * [_share]), min_size=2, max_size=2)))
+    },
     "box": _box,
     "piecewise-constant": _layers,
     "voxel-grid": _voxels,

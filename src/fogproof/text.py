@@ -21,6 +21,15 @@ def one_line(text: str) -> str:
     return " ".join(visible(text).split())
 
 
+def p_value(p: float, digits: int = 3) -> str:
+    """Return a p-value to so many digits; one that is too small for a float is none the less not 0.
+
+    >>> p_value(0.0123456), p_value(0.0)
+    ('0.0123', '< 1e-300')
+    """
+    return f"{p:.{digits}g}" if p > 0 else "< 1e-300"
+
+
 def duration(seconds: float, space: str = " ") -> str:
     """Return a time with a unit that suits it."""
     for unit, size in (("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)):

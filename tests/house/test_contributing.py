@@ -31,6 +31,7 @@ def test_there_is_a_recipe_for_everything():
         "phase_function",
         "study_method",
         "formula",
+        "bug",
     ]
     assert set(RECIPES) == {thing.replace("_", " ") for thing in things}
 

@@ -1,6 +1,6 @@
 """Samplers as users bring them: that they are what they claim, and that the errors planted in them are errors.
 
-The whole suite runs by name, `fogproof verify outsiders`, and with every error planted by `tools/outsiders.py --twins`.
+The whole suite runs by name, `fogproof verify outsiders`, and with every error planted by `fogproof zoo outsiders --one-in 1`.
 """
 
 import numpy as np

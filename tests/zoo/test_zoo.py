@@ -1,6 +1,8 @@
 """The zoo tells killed from survived, a right cause from a wrong one, and a right subject from a bug; a stopped run goes on."""
 
 import json
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,7 +11,7 @@ from click.testing import CliRunner
 from fogproof.cli.commands import cli
 from fogproof.domains import Interval
 from fogproof.errors import InvalidInputError
-from fogproof.zoo import all_bugs, select
+from fogproof.zoo import FOLDERS, bugs_of, select
 from fogproof.zoo.bug import sampler_bug
 from fogproof.zoo.laws import ones
 from fogproof.zoo.matrix import counts
@@ -28,8 +30,8 @@ def of(rows):
 
 
 def test_every_bug_has_a_name_of_its_own_a_source_and_a_cause():
-    bugs = all_bugs()
-    assert len({b.name for b in bugs}) == len(bugs) > 60
+    bugs = [b for folder in FOLDERS if folder != "mutants" for b in bugs_of(folder)]
+    assert len({b.name for b in bugs}) == len(bugs) > 600
     for b in bugs:
         assert b.source
         assert " " not in b.name
@@ -38,7 +40,7 @@ def test_every_bug_has_a_name_of_its_own_a_source_and_a_cause():
 
 def test_bent_uniforms_are_killed_and_right_ones_are_not():
     bent = run_bug(bug(lambda u: u[:, 0] ** 1.5), 20_000, 1e-6, 1)
-    assert (bent.status, bent.outcome) == ("killed", "rejected")
+    assert (bent.status, bent.outcome, bent.needed) == ("killed", "rejected", 0.0)
     assert bent.checks
     assert of([bent]).killed == of([bent]).feasible == 1
     missed = run_bug(bug(lambda u: u[:, 0]), 20_000, 1e-6, 1)
@@ -74,6 +76,28 @@ def test_what_raises_is_its_own_row():
     assert not of(rows).good
 
 
+THREADS = json.loads((Path(__file__).parents[1] / "data" / "field-bug-threads.json").read_text())
+
+
+@pytest.mark.parametrize("known", THREADS, ids=lambda known: known["id"])
+def test_every_bug_of_the_field_that_is_known_is_planted(known):
+    thread = known["thread"].partition("/")[2].lower()
+    assert any(b.source.lower() == thread for b in bugs_of("field")), f"no bug cites {known['thread']}"
+
+
+def test_every_misprint_is_planted():
+    assert {b.title.split()[0] for b in bugs_of("errata")} == {f"E{i}" for i in range(1, 13)}
+
+
+def test_what_no_test_can_see_is_infeasible_and_what_changes_nothing_is_equal():
+    right = bug(lambda u: u[:, 0])
+    assert run_bug(replace(right, needed=lambda: 1e9), 20_000, 1e-6, 1).status == "infeasible"
+    assert run_bug(replace(right, needed=lambda: 1e3), 20_000, 1e-6, 1).status == "survived"
+    assert run_bug(replace(right, needed=lambda: np.inf), 20_000, 1e-6, 1).status == "equal"
+    equal = replace(bug(lambda u: u[:, 0] ** 1.5), equal=True)
+    assert run_bug(equal, 20_000, 1e-6, 1).status == "false-alarm"  # what is called equal must be
+
+
 def test_a_stopped_run_goes_on_and_other_settings_are_refused(tmp_path):
     log = ZooLog(tmp_path / "deep" / "zoo.jsonl", {"samples": 20_000})
     assert log.read() == []
@@ -89,7 +113,7 @@ def test_a_stopped_run_goes_on_and_other_settings_are_refused(tmp_path):
 
 
 def test_the_command_prints_rows_and_ends_with_what_it_found(tmp_path):
-    arguments = ["zoo", "field/disk-with-r-u", "--samples", "20000", "-o", str(tmp_path), "--json"]
+    arguments = ["zoo", "field/log-of-0", "--samples", "20000", "-o", str(tmp_path), "--json"]
     first = CliRunner().invoke(cli, arguments, standalone_mode=False)
     assert first.return_value == 0, first.output
     assert json.loads(first.stdout.splitlines()[0])["status"] == "killed"

@@ -27,6 +27,7 @@ from typing import Any
 
 from fogproof.catalogue.cases import Case, EstimatorCase, SamplerCase
 from fogproof.errors import InvalidInputError, shorten
+from fogproof.foreign import EndedProcessError, loading
 
 GROUP = "fogproof.cases"
 """The entry-point group."""
@@ -49,7 +50,7 @@ def own_cases(origin: str) -> tuple[Case, ...]:
     seen: dict[str, Case] = {}
     try:
         # What is printed on the way is for people: stdout may be JSON.
-        with contextlib.redirect_stdout(sys.stderr):
+        with loading(), contextlib.redirect_stdout(sys.stderr):
             made = (_function_of_file if is_file(origin) else _function_of_package)(origin)()
             for case in made:  # one by one: a generator may never end
                 if not isinstance(case, SamplerCase | EstimatorCase):
@@ -62,7 +63,7 @@ def own_cases(origin: str) -> tuple[Case, ...]:
                 seen[case.name] = replace(case, name=f"{prefix}/{case.name}", origin=origin)
     except InvalidInputError:
         raise
-    except (Exception, SystemExit) as error:
+    except Exception as error:
         raise InvalidInputError(f"{origin}: {_explained(error, origin)}", origin) from None
     if not seen:
         raise InvalidInputError(f"{origin}: cases() returned none", origin)
@@ -104,4 +105,6 @@ def _explained(error: BaseException, origin: str) -> str:
         return f"line {error.lineno}: {error.msg}"
     places = [f.lineno for f in traceback.extract_tb(error.__traceback__) if Path(f.filename).name == Path(origin).name]
     line = f"line {places[-1]}: " if places else ""
+    if isinstance(error, EndedProcessError):
+        return f"{line}{error}"
     return " ".join(f"{line}{type(error).__name__}: {error}".split())

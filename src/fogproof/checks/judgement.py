@@ -68,7 +68,7 @@ def judged(seen: Observed, again: Again, samples: int, alpha: float, complete: b
     if seen.bad:
         message = f"{seen.bad} of {seen.n} realisations are not finite, in value, cost or standard error"
         effect = seen.bad / seen.n
-        return Judgement((Finding("finite values", "rejected", message, effect=effect, cause="bias"),), True)
+        return Judgement((Finding("finite values", "rejected", message, effect=effect, cause="not a number"),), True)
     findings = [Finding("finite values", "not rejected", f"all {seen.n} realisations are finite")]
     claims = [(q, c) for q in seen.quantities for c in range(len(q.value))]
     covered = seen.coverage.n > 0

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fogproof.errors import UnsupportedError
+from fogproof.text import p_value
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -53,7 +54,7 @@ def as_html(verdict: Verdict) -> str:
     head += f"<br>likely: {escape(verdict.cause)}" if verdict.cause else ""
     rows = []
     for f in verdict.findings:
-        p = "" if f.p_value is None else f"{f.p_value:.3g}"
+        p = "" if f.p_value is None else p_value(f.p_value)
         cells = (f.check, f.message, p, "" if f.resolution is None else str(f.resolution))
         first = f"<td style='color:{_COLOURS[f.outcome]}'>{escape(f.outcome)}</td>"
         rows.append(f"<tr>{first}{''.join(f'<td>{escape(cell)}</td>' for cell in cells)}</tr>")

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from fogproof.errors import FogproofError, UnsupportedError
+from fogproof.text import p_value
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -240,7 +241,7 @@ class Verdict:
 
 def _line_of(finding: Finding) -> str:
     """Return one finding in a line."""
-    p = "" if finding.p_value is None else f" p = {finding.p_value:.3g}."
+    p = "" if finding.p_value is None else f" p = {p_value(finding.p_value)}.".replace("= <", "<")
     where = "".join(f" {region};" for region in finding.region).removesuffix(";")
     where = f"{where}." if where else ""
     size = f" Effect in {finding.interval}." if finding.interval and finding.outcome == "rejected" else ""

@@ -16,7 +16,7 @@ from fogproof.checks import fresh_seed
 from fogproof.cli.signals import code_of, stoppable
 from fogproof.cli.terminal import say
 from fogproof.errors import InvalidValueError
-from fogproof.text import one_line
+from fogproof.text import one_line, p_value
 from fogproof.verify import ALPHA, Result, exit_code, record, reproduce, run, select, shares
 
 
@@ -123,7 +123,7 @@ def _describe(width: int, result: Result) -> str:
     smallest = (
         min((f.p_value for f in rejecting if f.p_value is not None), default=None) if rejecting else verdict.p_value
     )
-    p = f"{smallest:.2g}" if smallest is not None else "certain" if rejecting else ""
+    p = p_value(smallest, 2) if smallest is not None else "certain" if rejecting else ""
     resolution = "" if verdict.resolution is None else f"{verdict.resolution.value:.2g} {verdict.resolution.kind}"
     if rejecting:  # what did it, not what would have been seen besides
         more = f" and {len(rejecting) - 1} more" if len(rejecting) > 1 else ""

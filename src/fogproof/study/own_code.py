@@ -14,6 +14,7 @@ from types import ModuleType
 from typing import Any
 
 from fogproof.errors import InvalidInputError
+from fogproof.foreign import EndedProcessError, loading
 
 NAME = re.compile(r"([^\W\d]\w*(?:\.[^\W\d]\w*)*):([^\W\d]\w*)")
 """module:Name."""
@@ -42,11 +43,14 @@ def loaded(module: str, folder: str) -> ModuleType:
             sys.path.insert(0, str(root))
         importlib.invalidate_caches()
         try:
-            found = importlib.import_module(module)
+            with loading():
+                found = importlib.import_module(module)
         except SyntaxError as error:
             where = Path(error.filename or module).name
             raise InvalidInputError(f"{where}, line {error.lineno}: {error.msg}", module) from None
-        except (Exception, SystemExit) as error:
+        except EndedProcessError as error:
+            raise InvalidInputError(f"cannot import {module}: {error}", module) from None
+        except Exception as error:
             raise InvalidInputError(f"cannot import {module}: {type(error).__name__}: {error}", module) from None
         _loaded[module] = state
         return found

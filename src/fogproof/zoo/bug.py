@@ -31,8 +31,10 @@ class Bug:
     source    where it was reported, or whose it is
     causes    names of causes that are right, as `Verdict.cause` gives them
     case      the subject that has it
-    needed    lower bound on the samples that the best test of this one error needs, see `limits`; 0 where nothing is known
+    needed    lower bound on the samples that the best test of this one error needs, see `limits`; asked for where nothing is
+              rejected
     equal     True where the change is known to change nothing: no test can tell it, and none should
+    most      most samples, where one costs much; 0 for as many as are asked for
     """
 
     name: str
@@ -40,8 +42,14 @@ class Bug:
     source: str
     causes: tuple[str, ...]
     case: Runnable
-    needed: float = 0.0
+    needed: Callable[[], float] = lambda: 1.0
     equal: bool = False
+    most: int = 0
+
+    @property
+    def folder(self) -> str:
+        """The first part of the name."""
+        return self.name.partition("/")[0]
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,8 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, Literal
 
+import numpy as np
+
 from fogproof.errors import InvalidInputError, NotInstalledError
 from fogproof.verify import case_seed
 from fogproof.zoo.bug import Bug
@@ -24,12 +26,13 @@ Status = Literal[
 class ZooRow:
     """What came of one bug, or of a right subject.
 
-    name, title, source, causes, needed   of the bug; a right subject has no causes
+    name, title, source, causes   of the bug; a right subject has no causes
     status    killed; survived; infeasible (not rejected, and no test could have at so many samples); equal (not rejected, and
               nothing is wrong); of right subjects passed, inconclusive or false-alarm; error; skipped
     outcome   of the verdict; cause is its, `named` whether it is one of those that are right
     checks    the findings that rejected, the strongest first
     samples   drawn until the check stopped
+    needed    of the bug where nothing was rejected, 0 otherwise
     seed      of the check
     others    p-values of other tests on the same subject, None where a test does not apply
     """
@@ -38,7 +41,6 @@ class ZooRow:
     title: str
     source: str
     causes: tuple[str, ...]
-    needed: float
     status: Status
     outcome: str = ""
     cause: str = ""
@@ -46,6 +48,7 @@ class ZooRow:
     checks: tuple[str, ...] = ()
     samples: int = 0
     seconds: float = 0.0
+    needed: float = 0.0
     seed: int = 0
     reason: str = ""
     others: dict[str, float | None] = field(default_factory=dict)
@@ -89,13 +92,15 @@ def run_bug(bug: Bug, samples: int, alpha: float, seed: int, others: Judge | Non
     """Run one bug; whatever goes wrong in it is its row, never the end of the run."""
     started, own = time.perf_counter(), case_seed(seed, bug.name)
     common: dict[str, Any] = {"name": bug.name, "title": bug.title, "source": bug.source, "causes": bug.causes}
-    common |= {"needed": float(bug.needed), "seed": own}
+    common["seed"] = own
+    samples = min(samples, bug.most or samples)
     needs = getattr(bug.case, "needs", "")
     if needs and importlib.util.find_spec(needs) is None:
         return ZooRow(**common, status="skipped", reason=f"{needs} is not installed")
     try:
         verdict = bug.case.run(alpha, own, samples)
         asked = {} if others is None else others(bug.case, own)
+        needed = 0.0 if verdict.outcome == "rejected" or not bug.causes else float(bug.needed())
     except NotInstalledError as error:
         return ZooRow(**common, status="skipped", reason=str(error))
     except Exception as error:  # a defect of one subject is its own row
@@ -103,7 +108,8 @@ def run_bug(bug: Bug, samples: int, alpha: float, seed: int, others: Judge | Non
     rejecting = sorted((f for f in verdict.findings if f.outcome == "rejected"), key=lambda f: f.p_value or 0.0)
     return ZooRow(
         **common,
-        status=_status(bug, verdict.outcome, samples),
+        needed=needed,
+        status=_status(bug, verdict.outcome, needed, samples),
         outcome=verdict.outcome,
         cause=verdict.cause,
         named=verdict.outcome == "rejected" and verdict.cause in bug.causes,
@@ -114,14 +120,16 @@ def run_bug(bug: Bug, samples: int, alpha: float, seed: int, others: Judge | Non
     )
 
 
-def _status(bug: Bug, outcome: str, samples: int) -> Status:
+def _status(bug: Bug, outcome: str, needed: float, samples: int) -> Status:
     if not bug.causes and not bug.equal:
         return {"rejected": "false-alarm", "inconclusive": "inconclusive"}.get(outcome, "passed")  # type: ignore[return-value]
     if bug.equal:
         return "false-alarm" if outcome == "rejected" else "equal"
     if outcome == "rejected":
         return "killed"
-    return "infeasible" if bug.needed > samples else "survived"
+    if np.isinf(needed):
+        return "equal"
+    return "infeasible" if needed > samples else "survived"
 
 
 @dataclass(frozen=True)

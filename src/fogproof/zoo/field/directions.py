@@ -171,7 +171,7 @@ def bugs() -> list[Bug]:
         ),
         sampler_bug(
             "Lambert by points in a ball",
-            "field: normal + random_in_unit_sphere",
+            "raytracing.github.io#145",
             _lambert_ball,
             COS,
             ("wrong power",),
@@ -179,7 +179,7 @@ def bugs() -> list[Bug]:
             **HALF,
         ),
         sampler_bug(
-            "cosine lobe with x and y twice as long", "field: 2 cos(phi) sqrt(u)", _doubled, COS, ("stretched",), **HALF
+            "cosine lobe with x and y twice as long", "TheRestOfYourLife#8", _doubled, COS, ("stretched",), **HALF
         ),
         sampler_bug(
             "uniform where the pdf is cosine-weighted",

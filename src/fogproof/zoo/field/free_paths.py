@@ -134,11 +134,11 @@ def bugs() -> list[Bug]:
             {"dimensions": None},
         ),
         sampler_bug(
-            "log of 0", "field: -log(u)", lambda u: -np.log(u[:, 0]) / SIGMA, EXP, ("edge of the uniforms",), **LINE
+            "log of 0", "EGSnrc#232", lambda u: -np.log(u[:, 0]) / SIGMA, EXP, ("edge of the uniforms",), **LINE
         ),
         sampler_bug(
             "u = 0 scatters in the vacuum before the grid",
-            "field: <= on an empty segment",
+            "SKIRT9#132",
             _empty_start,
             lambda t: np.where(t >= 1, SIGMA * np.exp(-SIGMA * (np.maximum(t, 1) - 1)), 0.0),
             ("edge of the uniforms",),
@@ -146,7 +146,7 @@ def bugs() -> list[Bug]:
         ),
         sampler_bug(
             "negative length near grazing incidence",
-            "field",
+            "chunky#1862",
             lambda u: _path(u[:, 0]) - 1e-4,
             EXP,
             ("outside the domain",),
@@ -154,7 +154,7 @@ def bugs() -> list[Bug]:
         ),
         sampler_bug(
             "reused number leaves [0, 1]",
-            "field: (u - cdf) / step",
+            "nori#32",
             _reused,
             lambda x: 2 * x,
             ("not a number", "outside the domain"),
@@ -163,7 +163,7 @@ def bugs() -> list[Bug]:
         ),
         sampler_bug(
             "one branch not divided by its probability",
-            "field",
+            "Graphics#5754",
             _absorbed,
             EXP,
             ("wrong weight",),
@@ -172,7 +172,7 @@ def bugs() -> list[Bug]:
         ),
         sampler_bug(
             "weight applied twice",
-            "mcx: launch weight",
+            "mcx#212",
             _squared,
             ones,
             ("wrong weight",),
@@ -181,7 +181,7 @@ def bugs() -> list[Bug]:
         ),
         sampler_bug(
             "guided distance, pdf of the classical one",
-            "field: Dwivedi",
+            "appleseed#2027",
             lambda u: _path(u[:, 0], 0.6),
             EXP,
             ("wrong scale",),
@@ -189,7 +189,7 @@ def bugs() -> list[Bug]:
         ),
         sampler_bug(
             "survival probability 0",
-            "field: roulette",
+            "Moer#77",
             _roulette,
             ones,
             ("not a number",),

@@ -100,7 +100,7 @@ def bugs() -> list[Bug]:
         sampler_bug("nearest table for the lower one", "openmc#1821", _nearest, _lower, ("shifted",), UnitSquare()),
         sampler_bug(
             "area missing in the pdf of a mesh",
-            "field",
+            "mitsuba3#42",
             _triangle,
             ones,
             ("normalisation", "wrong measure"),
@@ -116,7 +116,7 @@ def bugs() -> list[Bug]:
         ),
         sampler_bug(
             "lobe's probability missing in the pdf",
-            "field",
+            "GLSL-PathTracer#24",
             lambda u: np.where(u[:, 2:] < 0.5, hg(0.8)[0](u), hg(-0.3)[0](u)),
             lambda x: hg(0.8)[1](x) + hg(-0.3)[1](x),
             ("normalisation", "wrong measure"),
