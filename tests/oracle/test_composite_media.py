@@ -20,6 +20,7 @@ from fogproof.scene.shapes import Ball, Box, Slab
 CORE, FOG = Medium(0.5, 2.0, Rayleigh(), emission=3.0), Medium(0.1, 0.4, HenyeyGreenstein(0.5))
 GRID = VoxelGrid(np.arange(8.0).reshape(2, 2, 2) / 4, (-1, -1, -1), (1, 1, 1), albedo=0.5)
 SHAPES = (Ball((0, 0, 0), 1.0), Box((-2, -2, -2), (2, 2, 2)), Box((-3, -3, -3), (3, 3, 3)))
+WHOLE_RAY = Ray((0.1, 0.2, -5), (0, 0, 1), 10.0)
 RAY = Ray((0.1, 0.2, -5), (0, 0, 1), [4.0, 6.0, 10.0])
 
 
@@ -58,8 +59,8 @@ def test_the_phase_function_is_the_mean_of_what_scatters():
 def test_a_medium_cut_in_two_is_the_same():
     whole, halves = Box((-2, -2, -2), (2, 2, 2)), (Box((-2, -2, -2), (2, 2, 0)), Box((-2, -2, 0), (2, 2, 2)))
     lamp = PointLight((0.5, 1.0, 0.5), 3.0)
-    one = single_scattering(FOG, Ray(RAY.origin, RAY.direction, 10.0), lamp, shape=whole)
-    two = single_scattering(CompositeMedium((FOG, FOG), halves), Ray(RAY.origin, RAY.direction, 10.0), lamp)
+    one = single_scattering(FOG, WHOLE_RAY, lamp, shape=whole)
+    two = single_scattering(CompositeMedium((FOG, FOG), halves), WHOLE_RAY, lamp)
     assert abs(one.value - two.value) <= one.error + two.error
     assert two.error <= 1e-4 * two.value
 

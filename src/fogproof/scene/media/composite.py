@@ -41,7 +41,7 @@ class CompositeMedium:
         for one in media:
             if not all(hasattr(one, name) for name in ("channels", "albedo", "phase", "emission")):
                 raise InvalidValueError("media", "must be a list of media", one, "for example [Medium(0.1, 0.9)]")
-            if isinstance(one, CompositeMedium):
+            if hasattr(one, "media"):
                 raise UnsupportedError("a composite medium holds none: list all media in one", "media")
             require_phase("media.phase", one.phase, "must be one phase function in each of several media")
         shapes = tuple(shapes) or (EVERYWHERE,) * len(media)
