@@ -38,7 +38,11 @@ def breadth(light: SphereLight) -> float:
 def met(light: SphereLight, origin: np.ndarray, direction: np.ndarray) -> float:
     """Return the distance at which a ray meets the sphere, 0 from inside, inf if it does not [m]."""
     out = origin - np.asarray(light.center)
-    b, c = float(out @ direction), float(out @ out) - light.radius * light.radius
-    if c <= 0:
+    b, distance = float(out @ direction), float(np.linalg.norm(out))
+    beside = float(np.linalg.norm(out - b * direction))  # b^2 less the square of the distance would lose it from afar
+    if distance <= light.radius:
         return 0.0
-    return c / (-b + float(np.sqrt(b * b - c))) if b < 0 and b * b > c else np.inf
+    if b >= 0 or beside >= light.radius:
+        return np.inf
+    half = float(np.sqrt((light.radius - beside) * (light.radius + beside)))
+    return (distance - light.radius) * (distance + light.radius) / (half - b)

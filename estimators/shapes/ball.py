@@ -10,11 +10,17 @@ from fogproof.scene.shapes import Ball
 
 
 def through(shape: Ball, x: np.ndarray, w: np.ndarray) -> Ways:
-    """Return the roots of t^2 + 2 b t + c, without cancellation."""
+    """Return the roots of t^2 + 2 b t + c, without cancellation.
+
+    Half the chord comes from the distance of the line from the centre: b^2 - c would lose it to the square of the way there.
+    """
     offset = x - np.asarray(shape.center)[:, None]
-    b, c = np.sum(offset * w, axis=0), np.sum(offset * offset, axis=0) - shape.radius * shape.radius
-    square = b * b - c
+    b, distance = np.sum(offset * w, axis=0), np.sqrt(np.sum(offset * offset, axis=0))
+    off_centre = offset - b * w
+    beside = np.sqrt(np.sum(off_centre * off_centre, axis=0))
+    square = (shape.radius - beside) * (shape.radius + beside)
     far = -(b + np.copysign(np.sqrt(np.maximum(square, 0)), b))
+    c = (distance - shape.radius) * (distance + shape.radius)
     near = np.divide(c, far, out=np.zeros_like(c), where=far != 0)
     missed = square <= 0
     return np.where(missed, np.inf, np.minimum(near, far)), np.where(missed, -np.inf, np.maximum(near, far))

@@ -42,7 +42,7 @@ def regular_tracking(grid: VoxelGrid, rays: Ray, depth: np.ndarray | float = np.
     depth    () or (n,): n walks along one ray, or one along each of n rays
     channel  which one of the grid's channels
 
-    The optical depth is exact but for rounding, about an EPS of it for each cell.
+    The optical depth is exact but for rounding, a few EPS of it however many cells there are.
     """
     walk = _walk_of(grid)
     origin, direction = (np.array(a.reshape(-1, 3), order="C") for a in (rays.origin, rays.direction))

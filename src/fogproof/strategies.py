@@ -171,6 +171,9 @@ def _spheres(draw: st.DrawFn) -> dict[str, Any]:
 OWN: dict[str, Any] = {
     "spot": _spot,
     "rectangle": _rectangle,
+    "environment-map": lambda draw: {
+        "image": np.array(draw(st.lists(st.tuples(*4 * [_share]), min_size=2, max_size=2)))
+    },
     "box": _box,
     "piecewise-constant": _layers,
     "voxel-grid": _voxels,

@@ -32,6 +32,7 @@ from fogproof.scene import (
 )
 from fogproof.scene.lights import KINDS as LIGHT_KINDS
 from fogproof.scene.lights.disk import DiskLight
+from fogproof.scene.lights.environment_map import EnvironmentMap
 from fogproof.scene.lights.rectangle import RectangleLight
 from fogproof.scene.lights.sphere import SphereLight
 from fogproof.scene.media import FROM_PYTHON, KINDS
@@ -78,11 +79,12 @@ LIGHTS = {
     "spot": SpotLight((0.4, 0.9, 1.1), (0, -1, 0), 3.0, 0.8),
     "sun": DirectionalLight((0.0, 0.6, 0.8), 2.0),
     "sky": Environment(1.0),
+    "panorama": EnvironmentMap([[1.0, 0.2, 0.0, 0.4], [0.1, 0.0, 0.3, 0.0]], 2.0),
     "globe": SphereLight((0.4, 0.9, 1.1), 0.2, 3.0),
     "plate": DiskLight((0.4, 0.9, 1.1), (0, -1, 0), 0.2, 3.0),
     "window": RectangleLight((0.4, 0.9, 1.1), (0.3, 0, 0), (0, 0, 0.3), 3.0),
 }
-SLOW = ("globe", "plate", "window")
+SLOW = ("globe", "plate", "window", "panorama")
 """Light with extent takes the oracle seconds in media without a closed form: one of each kind of tracking is asked for."""
 PAIRS = [f"{medium} / {light}" for medium, light in product(MEDIA, LIGHTS)]
 
@@ -130,4 +132,6 @@ def test_an_endless_ray_is_refused_by_name_or_answered(pair):
 def test_only_what_nobody_follows_is_refused():
     refused = {pair for pair in PAIRS if plan(scene_of(pair, "short")).refused}
     skies = {f"{medium} / sky" for medium in MEDIA if medium not in ("homogeneous", "empty")}
-    assert refused == skies | {"function / sun", "unlike function / sun"}
+    assert refused == skies | {
+        f"{kind} / {far}" for kind in ("function", "unlike function") for far in ("sun", "panorama")
+    }

@@ -24,10 +24,12 @@ from fogproof.cli.terminal import say
     type=click.Path(path_type=Path, file_okay=False),
     help="Write stability.html, stability.json and stability.csv here; a page of `verify` beside them gets a section.",
 )
-@click.option("--short", is_flag=True, help="Fewer points in each region: seconds instead of a minute.")
+@click.option(
+    "--short", "brief", is_flag=True, help="Fewer points, and no truth that takes long: seconds, not a minute."
+)
 @click.option("--force", is_flag=True, help="Replace a stability.html that fogproof did not write.")
 @click.option("--json", "as_json", is_flag=True, help="Print the record as JSON instead of rows.")
-def command(names: tuple[str, ...], folder: Path | None, short: bool, force: bool, as_json: bool) -> int:
+def command(names: tuple[str, ...], folder: Path | None, brief: bool, force: bool, as_json: bool) -> int:
     """Measure formulas and samplers against 50-digit truth in regions where floating point fails.
 
     FORMULA is a name, a theme such as free_path, or a glob; without any, all are measured. Errors are in units in the last
@@ -39,16 +41,16 @@ def command(names: tuple[str, ...], folder: Path | None, short: bool, force: boo
     """
     from fogproof.stability.exact import flint
     from fogproof.stability.measuring import POINTS, POINTS_SHORT, FormError, measure
-    from fogproof.stability.record import exit_code, hidden, run_record, select
+    from fogproof.stability.record import exit_code, hidden, run_record, select, short
 
-    chosen = select(names)
+    chosen = short(select(names)) if brief else select(names)
     flint()  # says how to install it before anything else is done
     if folder is not None:
         from fogproof.reports import prepare_folder
 
         prepare_folder(folder, "stability.html", "stability.json", force)
     started, clock = datetime.datetime.now(datetime.UTC), time.perf_counter()
-    points = POINTS_SHORT if short else POINTS
+    points = POINTS_SHORT if brief else POINTS
     measured: list[FormError] = []
     width = max(len(formula.name) for formula in chosen)
     if not as_json:

@@ -37,6 +37,26 @@ def both_signs(low: float, high: float, *extra: float) -> Values:
     return values
 
 
+def including(values: Values, *extra: float) -> Values:
+    """Return the same values and these."""
+    return lambda n, dtype: _sorted(np.concatenate([values(n, dtype).astype(float), extra]), dtype)
+
+
+def around(centre: float, least: float, most: float) -> Values:
+    """Return the centre and values beside it, at relative distances from least to most on either side."""
+
+    def values(n: int, dtype: Any) -> np.ndarray:
+        off = both_signs(max(least, float(np.finfo(dtype).eps)), most)(n, dtype).astype(float)
+        return _sorted(np.concatenate([centre * (1 + off), [centre]]), dtype)
+
+    return values
+
+
+def minus(values: Values) -> Values:
+    """Return the same values below 0."""
+    return lambda n, dtype: -values(n, dtype)[::-1]
+
+
 def to_one(gap: float = 0.0, zero: float = 0.0) -> Values:
     """Return values in (0, 1) that crowd at both ends.
 

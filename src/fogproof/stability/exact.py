@@ -19,7 +19,7 @@ MOST_BITS = 1 << 14
 NOTHING = 6000
 """A ball around 0 within 2^-NOTHING is 0: no formula of numbers as small as floats are comes as near without being it."""
 
-STEP = 256
+STEP = 128
 """Arguments are moved by 2^-STEP of themselves to see what they do to the value."""
 
 
@@ -47,8 +47,11 @@ def number(x: float) -> Any:
     return flint().arb(float(x)) if math.isfinite(x) else flint().arb("inf" if x > 0 else "-inf")
 
 
-def exactly(formula: Callable[..., Any], arguments: dict[str, float]) -> ExactValue:
-    """Return a formula at exact arguments; `ArithmeticError` if no precision within reason encloses it."""
+def exactly(formula: Callable[..., Any], arguments: dict[str, float], condition: bool = True) -> ExactValue:
+    """Return a formula at exact arguments; `ArithmeticError` if no precision within reason encloses it.
+
+    condition  whether what the arguments do is wanted; 0 stands for it otherwise
+    """
     ctx, arb = flint().ctx, flint().arb
     bits = 2 * BITS
     while bits <= MOST_BITS:
@@ -58,7 +61,7 @@ def exactly(formula: Callable[..., Any], arguments: dict[str, float]) -> ExactVa
             if abs(value) < arb(2) ** -NOTHING:
                 value = arb(0)
             if value == arb.pos_inf() or value.is_zero() or value.rel_accuracy_bits() >= BITS:
-                return ExactValue(value, _reach(formula, given, value))
+                return ExactValue(value, _reach(formula, given, value) if condition else arb(0))
         bits *= 2
     raise ArithmeticError(f"no enclosure of {formula.__name__} with {MOST_BITS} bits at {arguments}")
 

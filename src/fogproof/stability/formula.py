@@ -21,11 +21,16 @@ Evaluate = Callable[..., np.ndarray | Reference]
 
 @dataclass(frozen=True)
 class HardRegion:
-    """A grid of arguments: `axes` vary, at most two of them, the others are `fixed`."""
+    """A grid of arguments: `axes` vary, at most two of them, the others are `fixed`.
+
+    derived  what takes axes and fixed ones by name and returns the arguments instead, rounded as they are, such as the origin of a
+             ray that comes from afar; None if they are the arguments themselves
+    """
 
     name: str
     axes: dict[str, Values]
     fixed: dict[str, float] = field(default_factory=dict)
+    derived: Callable[..., dict[str, np.ndarray]] | None = None
 
     def grid(self, n: int, precision: Precision) -> tuple[list[np.ndarray], dict[str, np.ndarray]]:
         """Return the values along each axis, and every argument at every point of the grid, (points,)."""
@@ -33,7 +38,8 @@ class HardRegion:
         along = [np.asarray(values(n, dtype), dtype) for values in self.axes.values()]
         mesh = [part.ravel() for part in np.meshgrid(*along, indexing="ij")]
         arguments = dict(zip(self.axes, mesh, strict=True))
-        return along, arguments | {name: np.full_like(mesh[0], value) for name, value in self.fixed.items()}
+        arguments |= {name: np.full_like(mesh[0], value) for name, value in self.fixed.items()}
+        return along, arguments if self.derived is None else self.derived(**arguments)
 
 
 @dataclass(frozen=True)
@@ -60,6 +66,7 @@ class Formula:
     naive       other ways to write it, each of which fails in one of the regions
     precisions  of arguments and result
     size        points along an axis, as a share of what is usual: a truth that takes long has fewer
+    condition   whether what the arguments do to the value is measured; errors are plain ulps where that takes too long
     """
 
     name: str
@@ -72,3 +79,4 @@ class Formula:
     naive: tuple[Naive, ...] = ()
     precisions: tuple[Precision, ...] = ("float64",)
     size: float = 1.0
+    condition: bool = True

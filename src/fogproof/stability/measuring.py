@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -91,36 +90,51 @@ def _measure(formula: Formula, region: HardRegion, precision: Precision, n: int)
     along, arguments = region.grid(n, precision)
     count = len(next(iter(arguments.values())))
     rows = [{name: float(values[i]) for name, values in arguments.items()} for i in range(count)]
-    truths = [_point(formula.truth, row, precision) for row in rows]
     axes = tuple((name, tuple(map(float, values))) for name, values in zip(region.axes, along, strict=True))
     forms: list[tuple[str, str, Evaluate, float | None]] = [(OURS, "", formula.ours, formula.bound)]
     forms += [(naive.name, naive.source, naive.evaluate, None) for naive in formula.naive]
+    fault = ""
+    try:
+        truths = [_point(formula, row, precision) for row in rows]
+    except Exception as error:
+        fault = f"no truth: {error}"
     found = []
     for name, source, evaluate, bound in forms:
         key: dict[str, Any] = {"formula": formula.name, "form": name, "source": source, "region": region.name}
         key |= {"precision": precision, "points": count, "bound": bound}
-        try:
-            with np.errstate(all="ignore"):
-                answer = evaluate(**{name: values.copy() for name, values in arguments.items()})
-        except Exception as error:  # one formula that fails costs no other its result
-            reason = f"{type(error).__name__}: {error}"
-            nothing: dict[str, Any] = {
-                "worst": math.inf,
-                "ulps": math.inf,
-                "condition": 0.0,
-                "share": None,
-                "stated": None,
+        outcome = {} if fault else _outcome(evaluate, arguments, truths, rows, bound)
+        if "reason" in outcome or fault:  # one formula that fails costs no other its result
+            outcome = {"worst": math.inf, "ulps": math.inf, "condition": 0.0, "share": None, "stated": None, **outcome}
+            outcome |= {
+                "violations": count,
+                "at": rows[0],
+                "value": math.nan,
+                "truth": "",
+                "reason": outcome.get("reason", fault),
             }
-            nothing |= {"violations": count, "at": rows[0], "value": math.nan, "truth": "", "reason": reason}
-            found.append(FormError(**key, **nothing))
-            continue
-        found.append(FormError(**key, **_compared(answer, truths, rows, bound), axes=axes))
+        found.append(FormError(**key, **outcome, axes=axes))
     return found
 
 
-def _point(truth: Callable[..., Any], row: dict[str, float], precision: Precision) -> Point:
+def _outcome(
+    evaluate: Evaluate,
+    arguments: dict[str, np.ndarray],
+    points: list[Point],
+    rows: list[dict[str, float]],
+    bound: float | None,
+) -> dict[str, Any]:
+    """Return what one form came to, or the reason why it came to nothing."""
+    try:
+        with np.errstate(all="ignore"):
+            answer = evaluate(**{name: values.copy() for name, values in arguments.items()})
+    except Exception as error:
+        return {"reason": f"{type(error).__name__}: {error}"}
+    return _compared(answer, points, rows, bound)
+
+
+def _point(formula: Formula, row: dict[str, float], precision: Precision) -> Point:
     arb = flint().arb
-    known = exactly(truth, row)
+    known = exactly(formula.truth, row, formula.condition)
     info = np.finfo(precision)
     if not known.value.is_finite():
         return Point(known, arb(0), arb(0))

@@ -25,6 +25,15 @@ COLUMNS = (
 )
 
 
+LONG = 0.3
+"""Formulas that have a smaller share of the usual points have a truth that takes long; the short form leaves them out."""
+
+
+def short(chosen: Iterable[Formula]) -> list[Formula]:
+    """Return the formulas of the short form."""
+    return [formula for formula in chosen if formula.size >= LONG]
+
+
 def select(names: Iterable[str]) -> list[Formula]:
     """Return the formulas whose name, or the folder it stands in, is one of these, or matches one as a glob; all by default."""
     names = list(names)
