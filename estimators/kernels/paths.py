@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from fogproof.estimators.kernels.compiling import inlined, kernel
+from fogproof.estimators.kernels.composites import at_collision
 from fogproof.estimators.kernels.events import facing_normal, new_direction, next_event, through_boundary
 from fogproof.estimators.kernels.flights import fly, shine
 from fogproof.estimators.kernels.path_data import DARK, MIRROR, SKY, PathRows, PathScene
@@ -83,8 +84,9 @@ def trace(
             if hit:
                 # The share 1 - albedo of the collisions absorbs, and there sigma_a L_e is emitted: no event has to be drawn for it.
                 x, y, z = x + t * dx, y + t * dy, z + t * dz
-                value[i, column] += throughput * (1.0 - rules.albedo) * rules.emission
-                throughput *= rules.albedo
+                albedo, glow = at_collision(medium, 0, rules.albedo, rules.emission, x, y, z)
+                value[i, column] += throughput * glow
+                throughput *= albedo
                 if rules.ambient >= 0.0:
                     value[i, min(order + 1, last)] += throughput * rules.ambient
                     break
