@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from fogproof.estimators.kernels.compiling import inlined, kernel
-from fogproof.estimators.kernels.events import facing_normal, new_direction, next_event
+from fogproof.estimators.kernels.events import facing_normal, new_direction, next_event, only_scattering
 from fogproof.estimators.kernels.path_data import DARK, MIRROR, SKY, Colours, PathRows, PathScene
 from fogproof.estimators.kernels.regions import crossing, reach
 from fogproof.estimators.kernels.scattering import reflected
@@ -53,6 +53,7 @@ def trace_in_colour(
     channels = value.shape[1]
     density, carried, through, ones = np.empty(channels), np.empty(channels), np.empty(channels), np.ones(channels)
     glow = (1.0 - colours.albedo) * colours.emission
+    nothing_beyond = only_scattering(scene, np.any(glow > 0.0))
     for i in range(len(value)):
         j = i if len(origin) > 1 else 0
         x, y, z = origin[j, 0], origin[j, 1], origin[j, 2]
@@ -119,6 +120,8 @@ def trace_in_colour(
                         if not np.isnan(light.limit):
                             return light.sigma, light.limit, start
                     gather(value[i], density, carried, colours.light, through, weight * arriving)
+            if order >= rules.deepest and nothing_beyond:
+                break
             dx, dy, dz, met = new_direction(rng, scene, x, y, z, dx, dy, dz, nx, ny, nz, hit)
             # What the brightest channel would still weigh decides about roulette: no other weighs more.
             total, most = 0.0, 0.0
