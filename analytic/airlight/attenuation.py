@@ -28,7 +28,8 @@ def attenuation(
     sigma = np.atleast_1d(medium.sigma_t)
     way, unsure = _way(shape, x, direction, length)
     value = _times(way, sigma)
-    return value, _times(unsure, sigma) + 8 * EPS * value
+    sure = np.isinf(value) & (unsure == 0)[:, None]  # nothing arrives then
+    return value, np.where(sure, 0.0, _times(unsure, sigma) + 8 * EPS * value)
 
 
 def _way(shape: Shape, x: np.ndarray, direction: np.ndarray, length: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -168,9 +168,23 @@ def _spheres(draw: st.DrawFn) -> dict[str, Any]:
     }
 
 
+def _several(draw: st.DrawFn) -> dict[str, Any]:
+    """Two media in boxes that may overlap."""
+    one = of_kind("homogeneous", MEDIA["homogeneous"])
+    return {
+        "media": (draw(one), draw(one)),
+        "shapes": tuple(draw(of_kind("box", SHAPES["box"])) for _ in range(2)),
+        "overlap": draw(st.sampled_from(["sum", "first"])),
+    }
+
+
 OWN: dict[str, Any] = {
+    "composite": _several,
     "spot": _spot,
     "rectangle": _rectangle,
+    "environment-map": lambda draw: {
+        "image": np.array(draw(st.lists(st.tuples(*4 * [_share]), min_size=2, max_size=2)))
+    },
     "box": _box,
     "piecewise-constant": _layers,
     "voxel-grid": _voxels,

@@ -11,7 +11,7 @@ from fogproof.estimators import (
     PathTracer,
     SpectralPathTracer,
 )
-from fogproof.scene import Ball, Medium, PointLight, Ray, Scene, VoxelGrid
+from fogproof.scene import Ball, CompositeMedium, Medium, PointLight, Ray, Scene, VoxelGrid
 from fogproof.scene.lights import Environment
 from fogproof.scene_estimator import estimator_for
 
@@ -99,7 +99,8 @@ def test_orders_that_are_not_followed_draw_nothing(counted):
 
 def test_paths_go_on_after_the_last_order_where_there_is_light_to_meet(counted):
     """Emission, a wall or a sky may be met behind it: their light is there, at its own price."""
-    for more in ({"medium": Medium(0.5, 4.5, emission=1.0)}, {"light": Environment(1.0)}):
+    several = CompositeMedium((Medium(0.5, 4.5, emission=1.0),), (BALL,))
+    for more in ({"medium": Medium(0.5, 4.5, emission=1.0)}, {"medium": several}, {"light": Environment(1.0)}):
         given = {"medium": Medium(0.5, 4.5), "light": ABOVE, **more}
         once, words = counted(PathTracer(given["medium"], BALL, ASIDE, given["light"], deepest=1, roulette=None))
         assert words > 3 * N

@@ -26,6 +26,7 @@ _COMMANDS = {
     "compare": "Compare another renderer's image with the oracle.",
     "export": "Write a scene for another renderer.",
     "render": "Render scenes with another program, and compare each with the oracle.",
+    "relations": "Hold a renderer to what is true of every scene, without an oracle.",
     "golden": "Write reference values with error bounds for offline test suites.",
     "plan": "Say which terms a scene needs, and which methods serve it.",
     "study": "Measure speed against error, resumable, on one core or a cluster.",

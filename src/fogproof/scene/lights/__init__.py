@@ -16,6 +16,7 @@ from fogproof.scene.kinds import ByKind
 from fogproof.scene.lights.directional import DirectionalLight
 from fogproof.scene.lights.disk import DiskLight
 from fogproof.scene.lights.environment import Environment
+from fogproof.scene.lights.environment_map import EnvironmentMap
 from fogproof.scene.lights.point import PointLight
 from fogproof.scene.lights.rectangle import RectangleLight
 from fogproof.scene.lights.sphere import SphereLight
@@ -26,6 +27,7 @@ __all__ = [
     "DirectionalLight",
     "DiskLight",
     "Environment",
+    "EnvironmentMap",
     "Light",
     "PointLight",
     "RectangleLight",
@@ -33,12 +35,15 @@ __all__ = [
     "SpotLight",
 ]
 
-Light = PointLight | SpotLight | DirectionalLight | Environment | SphereLight | RectangleLight | DiskLight
+Light = (
+    PointLight | SpotLight | DirectionalLight | Environment | EnvironmentMap | SphereLight | RectangleLight | DiskLight
+)
 KINDS: dict[str, type[Light]] = {
     "point": PointLight,
     "spot": SpotLight,
     "directional": DirectionalLight,
     "environment": Environment,
+    "environment-map": EnvironmentMap,
     "sphere": SphereLight,
     "rectangle": RectangleLight,
     "disk": DiskLight,
