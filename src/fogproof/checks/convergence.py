@@ -69,7 +69,9 @@ def check_convergence(
         f"{np.count_nonzero(~good)} with {n} samples" for good, n in zip(finite, sizes, strict=True) if not good.all()
     ]
     if bad:
-        findings = [Finding("finite values", "rejected", f"estimates are not finite: {', '.join(bad)}", cause="not a number")]
+        findings = [
+            Finding("finite values", "rejected", f"estimates are not finite: {', '.join(bad)}", cause="not a number")
+        ]
     else:
         near = tolerance_of(tolerance)
         if all(np.ptp(row, axis=0).max() == 0 for row in rows):
