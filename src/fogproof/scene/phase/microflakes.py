@@ -8,7 +8,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from fogproof.errors import InvalidValueError
-from fogproof.scene.arrays import FloatArray
+from fogproof.scene.arrays import MatrixArray
 from fogproof.validate import as_float_array, number, one_direction, require
 
 Reflection = Literal["specular", "diffuse"]
@@ -26,7 +26,7 @@ class Microflakes:
     reflection  "specular": flakes are mirrors; "diffuse": both their sides are Lambertian. Nothing is absorbed
     """
 
-    S: FloatArray
+    S: MatrixArray
     reflection: Reflection = "specular"
 
     def __post_init__(self) -> None:
