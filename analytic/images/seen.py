@@ -25,7 +25,7 @@ def seen(scene: ImageScene, ray: Ray) -> Seen:
 
     Background and emission along the part of the ray in the shape, and in-scattering as far as the scene follows it.
     """
-    if scene.scattering == "multiple":
+    if scene.scattering == "multiple" and np.any(scene.medium.albedo):
         value, error = scattered_to_the_end(scene, ray)
         return _columns(value, scene), _columns(error, scene)
     value, error = _direct(scene, ray)

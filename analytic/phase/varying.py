@@ -11,10 +11,11 @@ from fogproof.analytic.arithmetic.error_free import EPS, two_sum
 from fogproof.analytic.declaration import FORWARD, quantity
 from fogproof.analytic.phase.functions import phase_pdf, phase_values
 from fogproof.contracts import Reference
-from fogproof.errors import InvalidValueError
+from fogproof.errors import InvalidValueError, UnsupportedError
 from fogproof.scene import Ramp, VaryingPhase
 from fogproof.scene.arrays import FloatArray, PointArray
-from fogproof.scene.phase import AnyPhase, AnyPhaseField, PhaseFunction
+from fogproof.scene.kinds import given
+from fogproof.scene.phase import AnyPhase, AnyPhaseField, PhaseFunction, PhaseOfMedia
 from fogproof.validate import as_float_array, points, require
 
 
@@ -46,6 +47,11 @@ def phase_pdf_at(phase: AnyPhaseField, x: PointArray, mu: FloatArray) -> Referen
     """
     x, mu = points("x", x), as_float_array("mu", mu)
     shape = np.broadcast_shapes(x.shape[:-1], mu.shape)
+    if isinstance(phase, PhaseOfMedia):
+        value, error = phase_values_at(
+            phase, np.broadcast_to(x, (*shape, 3)), *_either_side(np.broadcast_to(mu, shape))
+        )
+        return Reference(value, error, "mean by sigma_s", "elementary: scattering coefficients add")
     if not isinstance(phase, VaryingPhase):
         same = phase_pdf(phase, mu)
         value, error = np.broadcast_to(same.value, shape), np.broadcast_to(same.error, shape)
@@ -61,6 +67,8 @@ def phase_pdf_at(phase: AnyPhaseField, x: PointArray, mu: FloatArray) -> Referen
 
 def phase_components(phase: AnyPhase) -> list[PhaseFunction]:
     """Return the phase functions that a medium scatters by, in whatever proportion."""
+    if isinstance(phase, PhaseOfMedia):
+        return [medium.phase for medium in phase.medium.media]
     return [phase.first, phase.second] if isinstance(phase, VaryingPhase) else [phase]
 
 
@@ -68,11 +76,34 @@ def phase_values_at(
     phase: AnyPhase, points: np.ndarray, mu: np.ndarray, x: np.ndarray, y: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return f_p and its error at points (m, 3), see `phase_values`."""
+    if isinstance(phase, PhaseOfMedia):
+        return _of_media(phase, points, mu, x, y)
     if not isinstance(phase, VaryingPhase):
         return phase_values(phase, mu, x, y)
     (first, first_error), (second, second_error) = (phase_values(f, mu, x, y) for f in phase_components(phase))
     q = share_at(phase, points)
     return (1 - q) * first + q * second, first_error + second_error
+
+
+def _either_side(mu: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    return mu, (1 - mu) / 2, (1 + mu) / 2
+
+
+def _of_media(
+    phase: PhaseOfMedia, points: np.ndarray, mu: np.ndarray, x: np.ndarray, y: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the mean by what scatters, 0 where nothing does."""
+    if phase.medium.channels is not None:
+        what = "a phase function of several media that differs from channel to channel"
+        raise UnsupportedError(f"{what}; ask for one channel at a time", "medium")
+    scattering = np.asarray(given(phase.medium, "fogproof.analytic.media", "scattering")(phase.medium, points))
+    total = scattering.sum(axis=0)
+    value, error = np.zeros(total.shape), np.zeros(total.shape)
+    for part, sigma_s in zip(phase_components(phase), scattering, strict=True):
+        share = np.divide(sigma_s, total, out=np.zeros_like(total), where=total > 0)
+        density, its_error = phase_values(part, mu, x, y)
+        value, error = value + share * density, error + share * (its_error + 8 * EPS * density)
+    return value, error
 
 
 def share_at(phase: VaryingPhase, x: Any) -> np.ndarray:

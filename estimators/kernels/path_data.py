@@ -70,7 +70,15 @@ class BlendLobe(NamedTuple):
     way_z: float
 
 
-AnyLobe = Lobe | TableLobe | BlendLobe
+class MediaLobe(NamedTuple):
+    """The phase functions of several media: of the first, of all the rest, and the chain of media that says what scatters where."""
+
+    first: Any
+    second: Any
+    media: Any
+
+
+AnyLobe = Lobe | TableLobe | BlendLobe | MediaLobe
 
 
 DARK, POINT, PARALLEL, SKY = range(4)

@@ -11,7 +11,8 @@ import numpy as np
 from numba.extending import overload
 
 from fogproof.estimators.kernels.compiling import KERNEL_OPTIONS, inlined
-from fogproof.estimators.kernels.path_data import HENYEY_GREENSTEIN, ISOTROPIC, BlendLobe, Lobe
+from fogproof.estimators.kernels.composites import share_of_rest
+from fogproof.estimators.kernels.path_data import HENYEY_GREENSTEIN, ISOTROPIC, BlendLobe, Lobe, MediaLobe
 
 Vector = tuple[float, float, float]
 
@@ -138,11 +139,18 @@ def _density_table(lobe: Any, x: float, y: float, z: float, mu: float) -> float:
     return (1.0 - share) * lobe.left[i] + share * lobe.right[i]
 
 
-@inlined
-def share_of_second(lobe: BlendLobe, x: float, y: float, z: float) -> float:
-    """Return the share of the second lobe at a place."""
+def share_of_second(lobe: Any, x: float, y: float, z: float) -> float:
+    """Return the share of the second lobe at a place; in kernels only."""
+    raise NotImplementedError("runs inside kernels only")
+
+
+def _share_along(lobe: Any, x: float, y: float, z: float) -> float:
     along = (x - lobe.start_x) * lobe.way_x + (y - lobe.start_y) * lobe.way_y + (z - lobe.start_z) * lobe.way_z
     return min(max(along, 0.0), 1.0)
+
+
+def _share_of_media(lobe: Any, x: float, y: float, z: float) -> float:
+    return share_of_rest(lobe.media, x, y, z)
 
 
 def _scattered_blend(
@@ -161,6 +169,13 @@ def _density_blend(lobe: Any, x: float, y: float, z: float, mu: float) -> float:
 
 _INLINED = {"forceinline": True, **KERNEL_OPTIONS}
 
+BLENDS = (BlendLobe, MediaLobe)
+
+
+@overload(share_of_second, jit_options=_INLINED)
+def _choose_share(lobe: Any, x: float, y: float, z: float) -> Any:
+    return _share_along if lobe.instance_class is BlendLobe else _share_of_media
+
 
 @overload(scattered, jit_options=_INLINED)
 def _choose_scattered(
@@ -168,14 +183,14 @@ def _choose_scattered(
 ) -> Any:
     if lobe.instance_class is Lobe:
         return _scattered_closed
-    return _scattered_blend if lobe.instance_class is BlendLobe else _scattered_table
+    return _scattered_blend if lobe.instance_class in BLENDS else _scattered_table
 
 
 @overload(phase_density, jit_options=_INLINED)
 def _choose_density(lobe: Any, x: float, y: float, z: float, mu: float) -> Any:
     if lobe.instance_class is Lobe:
         return _density_closed
-    return _density_blend if lobe.instance_class is BlendLobe else _density_table
+    return _density_blend if lobe.instance_class in BLENDS else _density_table
 
 
 @inlined

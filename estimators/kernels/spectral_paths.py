@@ -9,7 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from fogproof.estimators.kernels.compiling import inlined, kernel
-from fogproof.estimators.kernels.events import facing_normal, new_direction, next_event
+from fogproof.estimators.kernels.composites import at_collision
+from fogproof.estimators.kernels.events import facing_normal, new_direction, next_event, only_scattering
 from fogproof.estimators.kernels.path_data import DARK, MIRROR, SKY, Colours, PathRows, PathScene
 from fogproof.estimators.kernels.regions import crossing, reach
 from fogproof.estimators.kernels.scattering import reflected
@@ -52,7 +53,9 @@ def trace_in_colour(
     value = rows.value
     channels = value.shape[1]
     density, carried, through, ones = np.empty(channels), np.empty(channels), np.empty(channels), np.ones(channels)
-    glow = (1.0 - colours.albedo) * colours.emission
+    albedo, glow = np.empty(channels), np.empty(channels)
+    known = np.any(colours.albedo > 0.0)  # 0: albedo and emission are looked up
+    nothing_beyond = only_scattering(scene, np.any(colours.emission > 0.0) or not known)
     for i in range(len(value)):
         j = i if len(origin) > 1 else 0
         x, y, z = origin[j, 0], origin[j, 1], origin[j, 2]
@@ -87,13 +90,15 @@ def trace_in_colour(
             nx, ny, nz = 0.0, 0.0, 0.0
             if hit:
                 x, y, z = x + t * dx, y + t * dy, z + t * dz
+                for c in range(channels):
+                    albedo[c], glow[c] = at_collision(medium, c, colours.albedo[c], colours.emission[c], x, y, z)
                 gather(value[i], density, carried, glow, ones, 1.0)
                 if order >= rules.deepest:
                     break
                 order += 1
                 on_wall = False
                 for c in range(channels):
-                    carried[c] *= colours.albedo[c]
+                    carried[c] *= albedo[c]
             else:
                 x, y, z = x + end * dx, y + end * dy, z + end * dz
                 gather(value[i], density, carried, ones, ones, wall.radiance)
@@ -119,6 +124,8 @@ def trace_in_colour(
                         if not np.isnan(light.limit):
                             return light.sigma, light.limit, start
                     gather(value[i], density, carried, colours.light, through, weight * arriving)
+            if order >= rules.deepest and nothing_beyond:
+                break
             dx, dy, dz, met = new_direction(rng, scene, x, y, z, dx, dy, dz, nx, ny, nz, hit)
             # What the brightest channel would still weigh decides about roulette: no other weighs more.
             total, most = 0.0, 0.0

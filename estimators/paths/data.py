@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 
 from fogproof.errors import UnsupportedError
+from fogproof.estimators.free_paths.fog import everywhere
 from fogproof.estimators.kernels import path_data as data
 from fogproof.estimators.kernels.data import BlockBound, Lattice, RayBound
 from fogproof.estimators.media import ROOM
 from fogproof.estimators.tracking.majorant_grid import MajorantGrid
-from fogproof.estimators.tracking.medium_data import medium_data
+from fogproof.estimators.tracking.medium_data import grey_medium, medium_data
 from fogproof.scene import AnyMedium
 from fogproof.scene.kinds import given
 from fogproof.scene.lights import Light
@@ -50,6 +51,19 @@ def _given(thing: Any, room: str, name: str, argument: str) -> Any:
     if made is None:
         raise UnsupportedError(f"path tracing knows no {type(thing).__name__}", argument)
     return made
+
+
+def sources(medium: AnyMedium) -> tuple[float, float]:
+    """Return albedo and emission [W/(m^2 sr)] of a grey medium; 0 for both where the kernel looks them up at each collision."""
+    if looks_up(medium):
+        grey_medium(medium)
+        return 0.0, 0.0
+    return everywhere(medium)
+
+
+def looks_up(medium: AnyMedium) -> bool:
+    """Return whether kernels know albedo and emission of a medium at a place."""
+    return given(medium, ROOM, "kernel_sources") is not None
 
 
 def medium_and_bound(

@@ -68,6 +68,8 @@ class SpectralPathTracer:
         return PathScene(medium, bound, region, lobe, lamp, wall, rules), Colours(albedo, emission, colour)
 
     def _constant(self, name: str) -> np.ndarray:
+        if path_data.looks_up(self.medium):
+            return np.zeros(self.channels)
         value = getattr(self.medium, name)
         if callable(value) or np.ndim(value) > 1:
             raise UnsupportedError(f"the {name} must be the same everywhere", "medium")

@@ -14,7 +14,6 @@ import numpy as np
 
 from fogproof.contracts import Draws
 from fogproof.errors import InvalidValueError, UnsupportedError
-from fogproof.estimators.free_paths.fog import everywhere
 from fogproof.estimators.kernels.path_data import PathRows, PathRules, PathScene
 from fogproof.estimators.paths import data as path_data
 from fogproof.estimators.phase.functions import kernel_lobe
@@ -100,7 +99,7 @@ class PathTracer:
     def _scene(self) -> PathScene:
         """Everything but the ray, for the kernel."""
         how = choose_light_sampling(self.light_sampling, self.light, self.surface, self.refractive_index)
-        albedo, emission = everywhere(self.medium)
+        albedo, emission = path_data.sources(self.medium)
         roulette = self.roulette or Roulette(ENDLESS, 1.0)
         rules = PathRules(
             albedo,

@@ -7,7 +7,8 @@ import numpy as np
 from fogproof.errors import UnsupportedError
 from fogproof.estimators.kernels.path_data import BlendLobe
 from fogproof.estimators.phase.functions import kernel_lobe, phase_value
-from fogproof.scene.phase import AnyPhase, PhaseFunction, Ramp, VaryingPhase
+from fogproof.scene.kinds import given
+from fogproof.scene.phase import AnyPhase, PhaseFunction, PhaseOfMedia, Ramp, VaryingPhase
 
 
 def lobe(phase: VaryingPhase) -> BlendLobe:
@@ -25,8 +26,21 @@ def phase_value_at(phase: AnyPhase, x: np.ndarray, mu: np.ndarray) -> np.ndarray
     """Return f_p at points x (3, n) and forward cosines mu (n,) [1/sr]."""
     if isinstance(phase, PhaseFunction):
         return phase_value(phase, mu)
+    if not isinstance(phase, VaryingPhase):
+        return _of_media(phase, x, mu)
     share = _share(phase, x.T)
     return (1 - share) * phase_value(phase.first, mu) + share * phase_value(phase.second, mu)
+
+
+def _of_media(phase: PhaseOfMedia, x: np.ndarray, mu: np.ndarray) -> np.ndarray:
+    """Return the mean by what scatters, 0 where nothing does."""
+    medium = phase.medium
+    if medium.channels is not None:
+        raise UnsupportedError("phase functions that differ by channel: ask for one channel at a time", "medium")
+    parts = np.array(given(medium, "fogproof.estimators.media", "scattering")(medium, x.T))
+    total = parts.sum(axis=0)
+    values = sum(part * phase_value(one.phase, mu) for part, one in zip(parts, medium.media, strict=True))
+    return np.divide(values, total, out=np.zeros_like(total), where=total > 0)
 
 
 def _share(phase: VaryingPhase, x: np.ndarray) -> np.ndarray:

@@ -48,3 +48,21 @@ def write_renders_page(rows: Sequence[Mapping[str, Any]], renderer: str, folder:
         "renders.html", kind="renders", headline=(f"{len(rows)} scenes by {renderer}", told), tone=tone, rows=rows
     )
     return write_file(folder / "index.html", page)
+
+
+def write_relations_page(rows: Sequence[Mapping[str, Any]], renderer: str, folder: Path) -> Path:
+    """Write the page of the relations that a renderer keeps and breaks, scene by scene; return its path."""
+    broken = [row for row in rows if row["outcome"] == "rejected"]
+    errors = [row for row in rows if row["outcome"] == "error"]
+    kept = sum(row["outcome"] == "not rejected" for row in rows)
+    told = f"{len(broken)} broken, {kept} kept, {len(rows) - len(broken) - kept} that nothing is known of"
+    page = fill(
+        "relations.html",
+        kind="relations",
+        headline=(f"Relations of {renderer}", told),
+        tone="rejected" if broken or errors else "not-rejected",
+        rows=rows,
+        broken=broken,
+        scenes=list(dict.fromkeys(row["scene"] for row in rows)),
+    )
+    return write_file(folder / "index.html", page)

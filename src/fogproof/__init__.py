@@ -38,7 +38,8 @@ from fogproof.scene.surfaces import *  # noqa: F403
 if TYPE_CHECKING:
     from fogproof.checks import *  # noqa: F403
     from fogproof.gradient_check import check_gradient
-    from fogproof.images.compare import compare_image, compare_pictures
+    from fogproof.images.compare import compare_image
+    from fogproof.images.pairs import compare_pictures
     from fogproof.relation_check import check_relations
     from fogproof.runs import Run
     from fogproof.scene.files import read_image_scene, read_scene
@@ -90,7 +91,7 @@ _LAZY = {
     "check_relations": "fogproof.relation_check",
     "Run": "fogproof.runs",
     "compare_image": "fogproof.images.compare",
-    "compare_pictures": "fogproof.images.compare",
+    "compare_pictures": "fogproof.images.pairs",
     "estimator_for": "fogproof.scene_estimator",
     "read_image_scene": "fogproof.scene.files",
     "read_scene": "fogproof.scene.files",

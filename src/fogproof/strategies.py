@@ -168,7 +168,18 @@ def _spheres(draw: st.DrawFn) -> dict[str, Any]:
     }
 
 
+def _several(draw: st.DrawFn) -> dict[str, Any]:
+    """Two media in boxes that may overlap."""
+    one = of_kind("homogeneous", MEDIA["homogeneous"])
+    return {
+        "media": (draw(one), draw(one)),
+        "shapes": tuple(draw(of_kind("box", SHAPES["box"])) for _ in range(2)),
+        "overlap": draw(st.sampled_from(["sum", "first"])),
+    }
+
+
 OWN: dict[str, Any] = {
+    "composite": _several,
     "spot": _spot,
     "rectangle": _rectangle,
     "environment-map": lambda draw: {

@@ -22,7 +22,10 @@ ALLOWED = {
     "src/fogproof/study/methods/airlight.py": "the same",
     "src/fogproof/study/question.py": "a solution of the ball under a sky alone",
     "src/fogproof/scene/surfaces/surface.py": "validates its own field",
-    "src/fogproof/relations/table.py": "relations of a homogeneous box, of a slab, of the sun above one",
+    "src/fogproof/relations/anywhere.py": "relations of a homogeneous box and of a slab",
+    "src/fogproof/relations/paths.py": "relations of a grid, of the sun above a slab",
+    "src/fogproof/relations/scenes.py": "relations of grids, of half spaces, of the sun above a slab",
+    "src/fogproof/relations/setting.py": "the one kind that has no bounds of its own",
 }
 
 

@@ -14,8 +14,9 @@ from fogproof.analytic import image
 from fogproof.checks import fresh_seed
 from fogproof.cli.commands import cli
 from fogproof.errors import FogproofError
-from fogproof.images.compare import compare_image, compare_pictures
+from fogproof.images.compare import compare_image
 from fogproof.images.formats import format_of, layers
+from fogproof.images.pairs import compare_pictures
 
 LAMP = PointLight((0.6, 0.8, 4.0), 5.0)
 SCENE = ImageScene(

@@ -65,7 +65,18 @@ def test_scripts_need_their_renderer_alone(name):
         alias.name.split(".")[0] for node in ast.walk(tree) if isinstance(node, ast.Import) for alias in node.names
     }
     imported |= {node.module.split(".")[0] for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
-    assert imported <= {"__future__", "argparse", "json", "math", "typing", "numpy", "mitsuba", "bpy", "mathutils"}
+    assert imported <= {
+        "__future__",
+        "argparse",
+        "json",
+        "math",
+        "typing",
+        "numpy",
+        "mitsuba",
+        "drjit",
+        "bpy",
+        "mathutils",
+    }
     (table,) = [
         node.value.value
         for node in tree.body

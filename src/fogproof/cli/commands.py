@@ -26,12 +26,14 @@ _COMMANDS = {
     "compare": "Compare another renderer's image with the oracle.",
     "export": "Write a scene for another renderer.",
     "render": "Render scenes with another program, and compare each with the oracle.",
+    "relations": "Hold a renderer to what is true of every scene, without an oracle.",
     "golden": "Write reference values with error bounds for offline test suites.",
     "plan": "Say which terms a scene needs, and which methods serve it.",
     "study": "Measure speed against error, resumable, on one core or a cluster.",
     "stability": "Measure formulas against 50-digit truth in regions where floating point fails.",
     "report": "Make the page of a run again, or compare two runs.",
     "zoo": "Run known bugs against the checks, and print which are killed.",
+    "bench": "Measure speed against error, as ratios.",
     "gallery": "Draw the theory's pictures: oracle's curves, estimators' samples.",
 }
 

@@ -8,7 +8,9 @@ from pathlib import Path
 import click
 
 from fogproof.cli.terminal import say
-from fogproof.images.compare import ALPHA, TOLERANCE, ImageComparison, compare_image, compare_pictures
+from fogproof.images.compare import compare_image
+from fogproof.images.judging import ALPHA, TOLERANCE, ImageComparison
+from fogproof.images.pairs import compare_pictures
 
 CODES = {"not rejected": 0, "rejected": 1, "inconclusive": 3}
 SCENES = (".toml", ".json")

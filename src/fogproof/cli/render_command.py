@@ -11,7 +11,7 @@ import click
 
 from fogproof.cli.signals import code_of, stoppable
 from fogproof.cli.terminal import say
-from fogproof.images.compare import ALPHA, TOLERANCE
+from fogproof.images.judging import ALPHA, TOLERANCE
 from fogproof.images.renders import Wanted, render_scenes, write_page
 from fogproof.renderers.table import renderer_of
 

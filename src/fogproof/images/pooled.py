@@ -133,7 +133,7 @@ def _test(found: Residuals, pool: Pool, alpha: float, inside: np.ndarray | None 
     if data.low == data.high:  # each pixel is off by the same: no noise at all
         x = x * (1 + 1e-12 * (np.arange(len(x)) % 2))
         data = Moments.of(x)
-    finding = mean_test(pool.what, pool.what, data, 0.0, error, alpha, known=NOTHING)
+    finding = mean_test(pool.what, pool.what, data, 0.0, error, alpha, known=NOTHING, uncertain=0.0)
     return _in_words(finding, data, base, pool, len(d))
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import subprocess
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -14,14 +13,12 @@ from typing import Any
 from fogproof.errors import FogproofError, InvalidInputError
 from fogproof.images.compare import compare_image
 from fogproof.images.report import write_comparison
-from fogproof.renderers.table import Renderer, command_of
+from fogproof.renderers.running import RenderFailure, code_of, render_one
+from fogproof.renderers.table import Renderer
 from fogproof.reports.files import write_file
 from fogproof.reports.pages.images import write_renders_page
 from fogproof.scene.files import read_image_scene
 from fogproof.scene.to_json import to_json
-
-LAST = 300
-"""Characters of a renderer's last words that are kept."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +36,12 @@ class Wanted:
     alpha: float
     python: str
     seconds: float | None = None
+
+    @property
+    def values(self) -> dict[str, str]:
+        """What the command is told besides the scene."""
+        told = {"python": self.python, "samples": str(self.samples), "seed": str(self.seed), "threads": "0"}
+        return told | {"integrator": self.renderer.integrators[0]}
 
 
 def render_scenes(scenes: Sequence[Path], wanted: Wanted, folder: Path) -> Iterator[dict[str, Any]]:
@@ -75,9 +78,8 @@ def write_page(rows: Sequence[dict[str, Any]], wanted: Wanted, folder: Path) -> 
 
 def _key(scene: str, wanted: Wanted) -> str:
     """Return what a row depends on, as a digest; a script that the command names is part of it."""
-    words = command_of(wanted.renderer, Path("scene"), Path("out"), wanted.samples, wanted.seed, wanted.python)
-    code = [Path(word).read_bytes() for word in words if word.endswith(".py") and Path(word).is_file()]
-    parts = [scene.encode(), json.dumps([words, wanted.tolerance, wanted.alpha]).encode(), *code]
+    parts = [scene.encode(), json.dumps([wanted.tolerance, wanted.alpha]).encode()]
+    parts += code_of(wanted.renderer, wanted.values)
     return hashlib.blake2b(b"\0".join(parts), digest_size=16).hexdigest()
 
 
@@ -91,30 +93,10 @@ def _before(place: Path, key: str) -> dict[str, Any] | None:
 
 
 def _render(path: Path, scene: str, wanted: Wanted, place: Path) -> dict[str, Any]:
-    source, out = write_file(place / "scene.json", scene), place / "image.exr"
-    for old in (out, out.with_name(f"{out.name}.npy")):
-        old.unlink(missing_ok=True)
-    command = command_of(wanted.renderer, source, out, wanted.samples, wanted.seed, wanted.python)
-    try:
-        ran = subprocess.run(
-            command, capture_output=True, text=True, errors="replace", timeout=wanted.seconds, check=False
-        )
-    except subprocess.TimeoutExpired:
-        return _row(path.stem, "error", f"rendering took longer than {wanted.seconds:g} s")
-    except OSError as error:
-        return _row(path.stem, "error", f"cannot run {command[0]}: {error.strerror or error}")
-    if ran.returncode:
-        words = (ran.stderr.strip().splitlines() or [""])[-1][-LAST:]
-        refused = (
-            ran.returncode == 1 and not words.startswith(("Traceback", " ")) and "Error" not in words.split(":")[0]
-        )
-        if "No module named" in words and wanted.renderer.install:
-            return _row(path.stem, "error", f"{wanted.renderer.name} is not installed; {wanted.renderer.install}")
-        return _row(path.stem, "not rendered" if refused else "error", words or f"exit code {ran.returncode}")
-    beside = out.with_name(f"{out.name}.npy")  # a renderer that writes arrays may be given {out}.npy
-    out = beside if beside.exists() and not out.exists() else out
-    if not out.exists():
-        return _row(path.stem, "error", f"the renderer ended well and wrote no {out.name}")
+    source = write_file(place / "scene.json", scene)
+    out = render_one(wanted.renderer, source, place / "image.exr", wanted.values, wanted.seconds)
+    if isinstance(out, RenderFailure):
+        return _row(path.stem, "not rendered" if out.refused else "error", out.reason)
     try:
         done = compare_image([out], read_image_scene(source), tolerance=wanted.tolerance, alpha=wanted.alpha)
         page = write_comparison(done, place)

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from fogproof.errors import NotInstalledError
-from fogproof.images.compare import ImageComparison
 from fogproof.images.formats import format_of
+from fogproof.images.judging import ImageComparison
 from fogproof.images.maps import maps, picture_png, z_png
 from fogproof.reports.charts.colours import PAPER
 from fogproof.reports.charts.p_values import PValueHistogram

@@ -1,6 +1,6 @@
 """Blender's Cycles renders a scene, by a Python 3.11 that has bpy 5.
 
-    python render_with_cycles.py SCENE.json OUT.exr [--samples N] [--seed S]
+    python render_with_cycles.py SCENE.json OUT.exr [--samples N] [--seed S] [--threads N] [--integrator NAME]
 
 This file needs nothing else of fogproof, so that it can be copied. What Blender means by its parameters is written beside each.
 """
@@ -16,8 +16,8 @@ FAR = 1e3
 """Half the side of what is meant to be endless [m]."""
 
 
-def build(scene: dict[str, Any], samples: int, seed: int) -> None:
-    """Make the scene Blender's own."""
+def build(scene: dict[str, Any], samples: int, seed: int, threads: int = 0, integrator: str = "tracked") -> None:
+    """Make the scene Blender's own; volumes are tracked without bias, or marched in steps."""
     import bpy
     from mathutils import Matrix, Vector
 
@@ -37,8 +37,9 @@ def build(scene: dict[str, Any], samples: int, seed: int) -> None:
     )  # the first scattering is no bounce: 0 is single scattering
     cycles.max_bounces = cycles.volume_bounces = cycles.transparent_max_bounces = bounces
     cycles.transparent_max_bounces = 1024
+    cycles.volume_biased = integrator == "marched"
     cycles.volume_step_rate, cycles.volume_max_steps = 0.1, 65536
-    settings.render.threads_mode, settings.render.threads = "FIXED", 1
+    settings.render.threads_mode, settings.render.threads = "FIXED", threads or 1
     settings.view_settings.view_transform = "Raw"
     settings.render.image_settings.file_format = "OPEN_EXR"
     settings.render.image_settings.color_depth = "32"  # half floats by default
@@ -289,10 +290,12 @@ def main() -> None:
     parser.add_argument("out")
     parser.add_argument("--samples", type=int, default=64)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--threads", type=int, default=0, help="0: as many as it likes")
+    parser.add_argument("--integrator", default="tracked", choices=["tracked", "marched"])
     given = parser.parse_args()
     with open(given.scene, encoding="utf-8") as file:
         scene = json.load(file)
-    build(scene, given.samples, given.seed)
+    build(scene, given.samples, given.seed, given.threads, given.integrator)
     import bpy
 
     bpy.context.scene.render.filepath = given.out

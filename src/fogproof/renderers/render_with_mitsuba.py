@@ -1,6 +1,6 @@
 """Mitsuba 3 renders a scene, by an interpreter that has mitsuba.
 
-    python render_with_mitsuba.py SCENE.json OUT.exr [--samples N] [--seed S]
+    python render_with_mitsuba.py SCENE.json OUT.exr [--samples N] [--seed S] [--threads N] [--integrator NAME]
 
 This file needs nothing else of fogproof, so that it can be copied. What Mitsuba means by its parameters is written beside each.
 """
@@ -16,23 +16,24 @@ FAR = 1e4
 """Half the side of what is meant to be endless [m]."""
 
 
-def scene_of(scene: dict[str, Any], mi: Any, samples: int) -> dict[str, Any]:
+def scene_of(scene: dict[str, Any], mi: Any, samples: int, integrator: str = "volpath") -> dict[str, Any]:
     """Return the scene as Mitsuba's dictionary."""
     refuse_what_mitsuba_lacks(scene)
-    medium, camera = scene["medium"], scene["camera"]
+    camera = scene["camera"]
     transform = mi.ScalarTransform4f
     depth = {"none": 1, "single": 2, "multiple": -1}[scene["scattering"]]  # emitters alone, one bounce, all
     made: dict[str, Any] = {
         "type": "scene",
-        "integrator": {"type": "volpath", "max_depth": depth, "rr_depth": 1 << 20},
-        "fog": medium_of(medium, mi),
+        "integrator": {"type": integrator, "max_depth": depth, "rr_depth": 1 << 20},
         "sensor": sensor_of(camera, samples, transform),
     }
-    body = shape_of(scene, transform)
-    if body is None or inside(scene["shape"], camera["origin"]):
-        made["sensor"]["medium"] = {"type": "ref", "id": "fog"}  # a camera in a medium has to be told so
-    if body is not None:
-        made["body"] = body | {"bsdf": {"type": "null"}, "interior": {"type": "ref", "id": "fog"}}
+    for i, part in enumerate(parts_of(scene)):
+        made[f"fog{i}"] = medium_of(part["medium"], mi)
+        body, fog = shape_of(part, transform), {"type": "ref", "id": f"fog{i}"}
+        if body is None or inside(part["shape"], camera["origin"]):
+            made["sensor"]["medium"] = fog  # a camera in a medium has to be told so
+        if body is not None:
+            made[f"body{i}"] = body | {"bsdf": {"type": "null"}, "interior": fog}
     light = scene.get("light")
     if light is not None and light["kind"] != "environment":
         made["light"] = light_of(light, transform)
@@ -82,6 +83,26 @@ def sensor_of(camera: dict[str, Any], samples: int, transform: Any) -> dict[str,
     return {"type": "orthographic", "to_world": view @ transform().scale([width / 2, width / 2, 1]), **common}
 
 
+def parts_of(scene: dict[str, Any]) -> list[dict[str, Any]]:
+    """Return media with the shape each fills: layers are slabs that touch, grids are boxes."""
+    medium = scene["medium"]
+    if medium["kind"] == "voxel-grid":
+        return [{"medium": medium, "shape": {"kind": "box", "lower": medium["lower"], "upper": medium["upper"]}}]
+    if medium["kind"] != "piecewise-constant":
+        return [{"medium": medium, "shape": scene["shape"]}]
+    parts, axis, count = [], medium["axis"], len(medium["sigma_t"])
+    places = [max(-FAR, min(FAR, float(b))) for b in medium["boundaries"]]
+    albedos = medium["albedo"] if isinstance(medium["albedo"], list) else [medium["albedo"]] * count
+    for low, high, sigma_t, albedo in zip(places, places[1:], medium["sigma_t"], albedos, strict=False):
+        layer = {"kind": "homogeneous", "phase": medium["phase"]}
+        if isinstance(sigma_t, list) or isinstance(albedo, list):
+            raise SystemExit("layers in colour are not translated for Mitsuba")
+        layer |= {"sigma_a": sigma_t * (1 - albedo), "sigma_s": sigma_t * albedo}
+        slab = {"kind": "slab", "point": [high * x for x in axis], "normal": axis, "thickness": high - low}
+        parts.append({"medium": layer, "shape": slab})
+    return parts
+
+
 def medium_of(medium: dict[str, Any], mi: Any) -> dict[str, Any]:
     """Return the medium; sigma_t = scale times a spectrum that must not exceed 1."""
     phase = phase_of(medium["phase"])
@@ -122,11 +143,9 @@ def phase_of(phase: dict[str, Any]) -> dict[str, Any]:
 
 
 def shape_of(scene: dict[str, Any], transform: Any) -> dict[str, Any] | None:
-    """Return what the medium fills, None for all of space."""
-    shape, medium = scene["shape"], scene["medium"]
+    """Return what a medium fills, None for all of space."""
+    shape = scene["shape"]
     kind = shape["kind"]
-    if medium["kind"] == "voxel-grid":
-        return box_of(medium["lower"], medium["upper"], transform)
     if kind == "unbounded":
         return None
     if kind == "ball":
@@ -240,14 +259,24 @@ def main() -> None:
     parser.add_argument("out")
     parser.add_argument("--samples", type=int, default=64)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--threads", type=int, default=0, help="0: as many as it likes")
+    parser.add_argument("--integrator", default="volpath", choices=["volpath", "volpathmis"])
     given = parser.parse_args()
     import mitsuba as mi
 
     mi.set_variant("scalar_rgb")
     mi.set_log_level(mi.LogLevel.Error)
+    if given.threads == 1:
+        raise SystemExit("Mitsuba's scalar variants wait for ever where they may use one thread alone")
+    if given.threads:
+        import drjit
+
+        drjit.set_thread_count(given.threads)
     with open(given.scene, encoding="utf-8") as file:
         scene = json.load(file)
-    image = mi.render(mi.load_dict(scene_of(scene, mi, given.samples)), spp=given.samples, seed=given.seed)
+    image = mi.render(
+        mi.load_dict(scene_of(scene, mi, given.samples, given.integrator)), spp=given.samples, seed=given.seed
+    )
     mi.Bitmap(image).write(given.out)
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import shlex
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -21,26 +20,41 @@ READING = """    with open(given.scene, encoding="utf-8") as file:
 
 @dataclass(frozen=True)
 class Renderer:
-    """A renderer: the command that renders, with {python}, {scene}, {out}, {samples} and {seed} in it.
+    """A renderer: the command that renders, with {python}, {scene}, {out}, {samples}, {seed}, {threads} and {integrator} in it.
 
-    install  the line that installs it
+    install      the line that installs it
+    integrators  names of its ways to render a scene; the first is its usual one
     """
 
     name: str
     command: str
     install: str = ""
+    integrators: tuple[str, ...] = ("",)
+
+    def takes(self, key: str) -> bool:
+        """Return whether the command has a place for a value."""
+        return f"{{{key}}}" in self.command
+
+
+OPTIONS = "{scene} {out} --samples {samples} --seed {seed} --threads {threads} --integrator {integrator}"
+
+
+def _script(name: str) -> str:
+    return f"{{python}} {shlex.quote(str(HERE / f'render_with_{name}.py'))} {OPTIONS}"
 
 
 RENDERERS = {
     "mitsuba": Renderer(
         "mitsuba",
-        f"{{python}} {shlex.quote(str(HERE / 'render_with_mitsuba.py'))} {{scene}} {{out}} --samples {{samples}} --seed {{seed}}",
+        _script("mitsuba"),
         "python -m pip install 'fogproof[mitsuba]'",
+        ("volpath", "volpathmis"),
     ),
     "cycles": Renderer(
         "cycles",
-        f"{{python}} {shlex.quote(str(HERE / 'render_with_cycles.py'))} {{scene}} {{out}} --samples {{samples}} --seed {{seed}}",
+        _script("cycles"),
         "python3.11 -m venv cycles && cycles/bin/python -m pip install bpy==5.0.1 'numpy<2', then --python cycles/bin/python",
+        ("tracked", "marched"),
     ),
 }
 
@@ -56,12 +70,9 @@ def renderer_of(name_or_command: str) -> Renderer:
     return Renderer(Path(shlex.split(name_or_command)[0]).name, name_or_command)
 
 
-def command_of(
-    renderer: Renderer, scene: Path, out: Path, samples: int, seed: int, python: str = sys.executable
-) -> list[str]:
-    """Return the words of the command that renders a scene."""
-    values = {"python": python, "scene": str(scene), "out": str(out), "samples": str(samples), "seed": str(seed)}
-    words = []
+def command_of(renderer: Renderer, values: dict[str, str]) -> list[str]:
+    """Return the words of the command that renders a scene; values of its {keys}, an option without a value is left out."""
+    words: list[str] = []
     for word in shlex.split(renderer.command):
         for key, value in values.items():
             word = word.replace(f"{{{key}}}", value)

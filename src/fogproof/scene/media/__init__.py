@@ -18,6 +18,7 @@ import numpy as np
 from fogproof.scene.kinds import ByKind
 from fogproof.scene.media.anisotropic import AnisotropicMedium
 from fogproof.scene.media.common import channel_of
+from fogproof.scene.media.composite import CompositeMedium
 from fogproof.scene.media.exponential import ExponentialMedium
 from fogproof.scene.media.gaussian_puffs import GaussianPuffs
 from fogproof.scene.media.homogeneous import Medium
@@ -30,6 +31,7 @@ from fogproof.scene.media.voxel_grid import VoxelGrid
 __all__ = [
     "AnisotropicMedium",
     "AnyMedium",
+    "CompositeMedium",
     "ExponentialMedium",
     "GaussianPuffs",
     "LinearMedium",
@@ -49,6 +51,7 @@ KINDS: dict[str, type] = {
     "opengl-fog": OpenGLFog,
     "voxel-grid": VoxelGrid,
     "gaussian-puffs": GaussianPuffs,
+    "composite": CompositeMedium,
 }
 """The `kind` of each medium in files and requests; without one a medium is homogeneous."""
 

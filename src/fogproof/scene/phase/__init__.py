@@ -19,6 +19,7 @@ from fogproof.scene.phase.microflakes import Microflakes
 from fogproof.scene.phase.mie import Mie
 from fogproof.scene.phase.mixture import Mixture
 from fogproof.scene.phase.murky import Murky
+from fogproof.scene.phase.of_media import PhaseOfMedia
 from fogproof.scene.phase.phase_function import PhaseFunction
 from fogproof.scene.phase.phase_function import PhaseFunctionField as PhaseFunctionField
 from fogproof.scene.phase.phase_function import require_phase as require_phase
@@ -50,7 +51,7 @@ KINDS: dict[str, type[PhaseFunction]] = {
 }
 """The `kind` of each phase function in files and requests."""
 
-AnyPhase = PhaseFunction | VaryingPhase
+AnyPhase = PhaseFunction | VaryingPhase | PhaseOfMedia
 AnyPhaseField = Annotated[AnyPhase, ByKind({**KINDS, "varying": VaryingPhase})]
 """What a heterogeneous medium may have as its phase function."""
 
@@ -81,6 +82,7 @@ __all__ = [
     "Mixture",
     "Murky",
     "PhaseFunction",
+    "PhaseOfMedia",
     "PolydisperseMie",
     "Ramp",
     "Rayleigh",

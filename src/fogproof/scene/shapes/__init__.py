@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated
 
+import numpy as np
+
 from fogproof.scene.kinds import ByKind
 from fogproof.scene.shapes.ball import Ball
 from fogproof.scene.shapes.box import Box
@@ -34,3 +36,9 @@ EVERYWHERE = Unbounded()
 """What a medium fills if nothing else is said."""
 
 ShapeField = Annotated[Shape, ByKind("fogproof.scene.shapes")]
+
+
+def bounding_box(shape: Shape) -> tuple[np.ndarray, np.ndarray]:
+    """Return the corners of a box around a shape [m], infinite where it says of none."""
+    low, high = getattr(shape, "bounds", ((-np.inf,) * 3, (np.inf,) * 3))
+    return np.array(low), np.array(high)

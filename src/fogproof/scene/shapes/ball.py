@@ -21,3 +21,8 @@ class Ball:
     def __post_init__(self) -> None:
         object.__setattr__(self, "center", one_point("center", self.center))
         object.__setattr__(self, "radius", positive_length("radius", self.radius))
+
+    @property
+    def bounds(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Corners of a box around it [m]."""
+        return tuple(x - self.radius for x in self.center), tuple(x + self.radius for x in self.center)

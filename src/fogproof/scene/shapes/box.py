@@ -23,3 +23,8 @@ class Box:
         object.__setattr__(self, "upper", one_point("upper", self.upper))
         if not all(low < high for low, high in zip(self.lower, self.upper, strict=True)):
             raise InvalidValueError("upper", f"must be above lower = {self.lower} on each axis", self.upper)
+
+    @property
+    def bounds(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Its own corners [m]."""
+        return self.lower, self.upper
