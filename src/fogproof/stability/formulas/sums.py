@@ -116,7 +116,7 @@ FORMULAS = [
         variance,
         centred(2),
         MOMENTS,
-        bound=8.0,
+        bound=2.0,
         naive=(Naive("E[x^2] - E[x]^2", "textbooks", naive_variance),),
     ),
     Formula(
@@ -126,7 +126,7 @@ FORMULAS = [
         third,
         centred(3),
         MOMENTS,
-        bound=8.0,
+        bound=3.0,
         naive=(Naive("from moments about 0", "textbooks", naive_third),),
     ),
     Formula(
@@ -136,7 +136,7 @@ FORMULAS = [
         each("count", "sigma")(lambda count, sigma: regular_tracking(voxels(count, sigma), up(math.inf)).tau[0]),
         total,
         MANY,
-        bound=20.0,
+        bound=2.0,
         size=0.34,
         condition=False,
     ),
