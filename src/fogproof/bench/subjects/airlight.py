@@ -121,7 +121,8 @@ def benchmarks() -> list[Benchmark]:
     return [
         Benchmark("airlight", "Airlight, isotropic", "ray", "oracle", lambda: _ways(Isotropic(), ALTERNATIVES), goals, "flint"),
         Benchmark(
-            "airlight-hg", "Airlight, Henyey-Greenstein g = 0.8", "ray", "oracle", lambda: _ways(HenyeyGreenstein(0.8), ("equiangular", "pegoraro2010")),
+            "airlight-hg", "Airlight, Henyey-Greenstein g = 0.8", "ray", "oracle",
+            lambda: _ways(HenyeyGreenstein(0.8), ("equiangular", "pegoraro2010")),
             {"quad, math": Goal(">=", 50.0)}, "flint",
         ),
     ]  # fmt: skip
