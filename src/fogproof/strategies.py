@@ -168,6 +168,12 @@ def _spheres(draw: st.DrawFn) -> dict[str, Any]:
     }
 
 
+def _hot(draw: st.DrawFn) -> dict[str, Any]:
+    grid = draw(of_kind("voxel-grid", MEDIA["voxel-grid"]))
+    grid = dataclasses.replace(grid, emission=0.0)
+    return {"grid": grid, "temperature": 800.0 + 300.0 * grid.sigma_t, "wavelengths": draw(st.floats(4e-7, 1e-5))}
+
+
 def _several(draw: st.DrawFn) -> dict[str, Any]:
     """Two media in boxes that may overlap."""
     one = of_kind("homogeneous", MEDIA["homogeneous"])
@@ -180,6 +186,7 @@ def _several(draw: st.DrawFn) -> dict[str, Any]:
 
 OWN: dict[str, Any] = {
     "composite": _several,
+    "temperature-grid": _hot,
     "spot": _spot,
     "rectangle": _rectangle,
     "environment-map": lambda draw: {
