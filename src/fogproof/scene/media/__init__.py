@@ -27,6 +27,7 @@ from fogproof.scene.media.opengl_fog import OpenGLFog
 from fogproof.scene.media.piecewise_constant import PiecewiseConstantMedium
 from fogproof.scene.media.procedural import Procedural
 from fogproof.scene.media.temperature_grid import TemperatureGrid
+from fogproof.scene.media.transformed import TransformedMedium
 from fogproof.scene.media.voxel_grid import VoxelGrid
 
 __all__ = [
@@ -41,6 +42,7 @@ __all__ = [
     "PiecewiseConstantMedium",
     "Procedural",
     "TemperatureGrid",
+    "TransformedMedium",
     "VoxelGrid",
 ]
 
@@ -55,6 +57,7 @@ KINDS: dict[str, type] = {
     "gaussian-puffs": GaussianPuffs,
     "composite": CompositeMedium,
     "temperature-grid": TemperatureGrid,
+    "transformed": TransformedMedium,
 }
 """The `kind` of each medium in files and requests; without one a medium is homogeneous."""
 
