@@ -43,8 +43,9 @@ format: $(VENV)/.installed-lint  ## let ruff rewrite what it can
 calibrate: $(VENV)/.installed-test  ## how often the checks reject what is right; an hour, rewrites docs/calibration.md
 	$(BIN)/python tools/calibrate.py
 
-zoo: $(VENV)/.installed-test  ## known bugs against the checks and against other tests; half an hour, resumable
+zoo: $(VENV)/.installed-test  ## known bugs against the checks and against other tests; an hour, resumable, rewrites docs/comparison.md
 	$(BIN)/fogproof zoo --others -o build/zoo
+	cp build/zoo/zoo.md docs/comparison.md
 
 repeat: $(VENV)/.installed-test  ## 20 runs of the catalogue with fresh seeds: no false alarm
 	$(BIN)/python tools/repeat_verify.py
@@ -69,7 +70,12 @@ oracle-docs: $(VENV)/.installed  ## write the tables of docs/oracle.md and the p
 fuzz-oracle: $(VENV)/.installed-test  ## 20000 broken lines to the oracle as a process: each costs its own answer and no other
 	$(BIN)/python tools/fuzz_oracle.py
 
-bench: $(VENV)/.installed-test  ## benchmarks, as ratios of interleaved runs
+bench: $(VENV)/.installed-test  ## speed against error, every way to each number in turn; five minutes, rewrites docs/speed.md
+	$(BIN)/fogproof bench -o build/bench
+	cp build/bench/bench.md docs/speed.md
+
+.PHONY: bench-more
+bench-more: $(VENV)/.installed-test  ## what takes longer: studies, pipes, pages, paths, threads, memory of checks
 	@for script in benchmarks/*.py; do echo "== $$script"; $(BIN)/python $$script || exit 1; done
 
 study: $(VENV)/.installed  ## the lecture's estimators, speed against error; resumable, lands in runs/lecture

@@ -68,8 +68,11 @@ def one_sample(
     for block in blocks(n):
         drawn = places.sample(rng.random((len(value[block]), 1)))
         assert drawn.pdf is not None
-        inside = np.ones(len(drawn.x), bool) if drawn.event is None else drawn.event == 0
-        t = drawn.x if drawn.event is None else np.where(inside, drawn.x, 0.0)
+        out = None if drawn.event is None else drawn.event != 0
+        t = drawn.x if out is None else np.where(out, 0.0, drawn.x)
         scattered, cost[block] = lit.scattered(t, rng)
-        value[block] = np.where(inside, seen(t) * scattered / drawn.pdf, 0.0)  # a path that leaves the medium sees none
+        scattered *= seen(t)
+        np.divide(scattered, drawn.pdf, out=value[block])
+        if out is not None:
+            value[block][out] = 0.0  # a path that leaves the medium sees none
     return Draws(value, cost)

@@ -5,7 +5,17 @@ from __future__ import annotations
 import numpy as np
 
 from fogproof.estimators.kernels.compiling import inlined
-from fogproof.estimators.kernels.path_data import PARALLEL, POINT, SKY, Lamp, PathRules, PathScene, Region, Wall
+from fogproof.estimators.kernels.path_data import (
+    NOWHERE,
+    PARALLEL,
+    POINT,
+    SKY,
+    Lamp,
+    PathRules,
+    PathScene,
+    Region,
+    Wall,
+)
 from fogproof.estimators.kernels.regions import crossing, outward, reach, wall_normal
 from fogproof.estimators.kernels.scattering import (
     Vector,
@@ -20,6 +30,13 @@ from fogproof.estimators.kernels.scattering import (
 
 UNIFORM = 0.25 / np.pi
 """Density of the direction in which a uniform sky is looked for [1/sr]."""
+
+
+@inlined
+def only_scattering(scene: PathScene, glows: bool) -> bool:
+    """Return whether a path that may not scatter again has no more light to find, once the light was looked for."""
+    meets = scene.lamp.kind == SKY and scene.rules.meet
+    return not (glows or meets or scene.wall.kind != NOWHERE)
 
 
 @inlined

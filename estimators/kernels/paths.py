@@ -12,7 +12,13 @@ import numpy as np
 
 from fogproof.estimators.kernels.compiling import inlined, kernel
 from fogproof.estimators.kernels.composites import at_collision
-from fogproof.estimators.kernels.events import facing_normal, new_direction, next_event, through_boundary
+from fogproof.estimators.kernels.events import (
+    facing_normal,
+    new_direction,
+    next_event,
+    only_scattering,
+    through_boundary,
+)
 from fogproof.estimators.kernels.flights import fly, shine
 from fogproof.estimators.kernels.path_data import DARK, MIRROR, SKY, PathRows, PathScene
 from fogproof.estimators.kernels.regions import crossing, reach
@@ -45,6 +51,7 @@ def trace(
     medium, bound, lamp, wall, rules = scene.medium, scene.bound, scene.lamp, scene.wall, scene.rules
     value = rows.value
     last = value.shape[1] - 1
+    nothing_beyond = only_scattering(scene, rules.emission > 0.0 or rules.albedo == 0.0)  # 0: it is looked up
     for i in range(len(value)):
         j = i if len(origin) > 1 else 0
         x, y, z = origin[j, 0], origin[j, 1], origin[j, 2]
@@ -125,6 +132,8 @@ def trace(
                             return light.sigma, light.limit, start
                         through = light.value
                     value[i, min(order, last)] += throughput * weight * arriving * through
+            if order >= rules.deepest and nothing_beyond:
+                break
             dx, dy, dz, met = new_direction(rng, scene, x, y, z, dx, dy, dz, nx, ny, nz, hit)
             if order >= rules.roulette:
                 # A path goes on with its throughput as the probability: survivors weigh 1 then, never more.

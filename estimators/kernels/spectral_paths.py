@@ -10,7 +10,7 @@ import numpy as np
 
 from fogproof.estimators.kernels.compiling import inlined, kernel
 from fogproof.estimators.kernels.composites import at_collision
-from fogproof.estimators.kernels.events import facing_normal, new_direction, next_event
+from fogproof.estimators.kernels.events import facing_normal, new_direction, next_event, only_scattering
 from fogproof.estimators.kernels.path_data import DARK, MIRROR, SKY, Colours, PathRows, PathScene
 from fogproof.estimators.kernels.regions import crossing, reach
 from fogproof.estimators.kernels.scattering import reflected
@@ -54,6 +54,8 @@ def trace_in_colour(
     channels = value.shape[1]
     density, carried, through, ones = np.empty(channels), np.empty(channels), np.empty(channels), np.ones(channels)
     albedo, glow = np.empty(channels), np.empty(channels)
+    known = np.any(colours.albedo > 0.0)  # 0: albedo and emission are looked up
+    nothing_beyond = only_scattering(scene, np.any(colours.emission > 0.0) or not known)
     for i in range(len(value)):
         j = i if len(origin) > 1 else 0
         x, y, z = origin[j, 0], origin[j, 1], origin[j, 2]
@@ -122,6 +124,8 @@ def trace_in_colour(
                         if not np.isnan(light.limit):
                             return light.sigma, light.limit, start
                     gather(value[i], density, carried, colours.light, through, weight * arriving)
+            if order >= rules.deepest and nothing_beyond:
+                break
             dx, dy, dz, met = new_direction(rng, scene, x, y, z, dx, dy, dz, nx, ny, nz, hit)
             # What the brightest channel would still weigh decides about roulette: no other weighs more.
             total, most = 0.0, 0.0

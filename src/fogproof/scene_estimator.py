@@ -42,9 +42,11 @@ class SceneEstimator:
 
     def draw(self, rng: np.random.Generator, n: int) -> Draws:
         """Return n realisations of the radiance [W/(m^2 sr)], at the cost of all their look-ups."""
-        value, cost = np.zeros(n), np.zeros(n)
-        for part in self.parts.values():
-            draws = part.draw(rng, n)
+        drawn = [part.draw(rng, n) for part in self.parts.values()]
+        if not drawn:
+            return Draws(np.zeros(n), np.zeros(n))
+        value, cost = drawn[0].value, drawn[0].cost
+        for draws in drawn[1:]:
             value, cost = value + draws.value, cost + draws.cost
         return Draws(value, cost)
 

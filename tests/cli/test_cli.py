@@ -51,8 +51,14 @@ def test_verify_writes_a_report_and_exits_0(tmp_path):
 
 def test_progress_is_silent_where_stderr_is_not_a_terminal():
     out = fogproof("verify", "fog/analog/haze", "--json")
-    assert json.loads(out.stdout)["cases"][0]["status"] == "passed"
+    (case,) = json.loads(out.stdout)["cases"]
+    assert (case["status"], case["twin_result"]) == ("passed", None)
     assert len(out.stderr.splitlines()) == 1
+
+
+def test_broken_twins_run_where_they_are_asked_for():
+    (case,) = json.loads(fogproof("verify", "fog/analog/haze", "--json", "--twins").stdout)["cases"]
+    assert case["twin_result"]["outcome"] == "rejected"
 
 
 def test_list_names_every_case():

@@ -80,6 +80,15 @@ def test_a_control_equal_to_the_extinction_leaves_no_variance():
     assert transmittance_variance(Medium(0.2, 0.3), Ray((0, 0, 0), Z, 2.0), "residual-ratio", 1.0, 0.5).value == 0
 
 
+@pytest.mark.parametrize("excess", [1e-9, 0.03])
+def test_delta_tracking_with_a_majorant_that_is_exceeded_has_no_moments(excess):
+    medium, ray = Medium(0.2, 0.3), Ray((0, 0, 0), Z, 2.0)
+    assert transmittance_variance(medium, ray, "delta", 0.5).value > 0
+    with pytest.raises(InvalidValueError, match="delta tracking is biased there"):
+        transmittance_variance(medium, ray, "delta", 0.5 / (1 + excess))
+    assert transmittance_variance(medium, ray, "ratio", 0.5 / (1 + excess)).value > 0
+
+
 def test_limits():
     ray = Ray((0, 0, 0), Z, np.inf)
     assert transmittance_variance(Medium(0.0, 0.0), ray, "ratio", 1.0).value == 0

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from study_fixtures import HOW, LIT, SMALL, drawn, estimator, kinds, study_from, toml
 
-from fogproof.study import read_study, run_study
+from fogproof.study import aggregate, read_study, run_study
 from fogproof.study.batches import run_batch
 from fogproof.study.cells import cells_of
 from fogproof.study.executors import open_workers
@@ -138,7 +138,7 @@ def test_an_interrupt_keeps_what_is_under_way(tmp_path, undisturbed):
 
 KILLER = """
 import os, signal, sys
-from fogproof.study import read_study, run_study
+from fogproof.study import aggregate, read_study, run_study
 from fogproof.study.stored_batches import Store
 left = [int(sys.argv[3])]
 add = Store.add
@@ -217,6 +217,27 @@ def test_batches_are_drawn_again_alike():
         one, two = (run_batch(STUDY.text, STUDY.folder, batch, reference) for _ in range(2))
         assert np.array_equal(one.moments, two.moments)
         assert np.array_equal(one.tail, two.tail)
+
+
+def test_the_largest_deviations_are_all_there_down_to_the_least_that_is_kept(tmp_path, monkeypatch):
+    """A batch keeps its largest only: below the smallest of those, some of another batch's may be missing."""
+    monkeypatch.setattr(aggregate, "_AT_ONCE", 2)  # batches that are read together, 10 000 elsewhere
+    drawn(STUDY, tmp_path)
+    cells, batches = cells_of(STUDY), batches_of(cells_of(STUDY))
+    with opened(tmp_path, STUDY) as store:
+        rows = list(store.rows())
+        levels = aggregate.levels_of(iter(rows), cells, batches)
+    seen = 0
+    for stretch in batches.stretches:
+        level = levels[stretch.cell].pop(0)
+        own = [np.frombuffer(row[2]) for row in rows if 0 <= row[0] - stretch.begin < level.batches]
+        own = [tail for tail in own if len(tail)]
+        if len(own) > 1 and len(level.tail):
+            least = max(tail[0] for tail in own)
+            every = np.sort(np.concatenate(own))
+            assert np.array_equal(level.tail, every[every >= least])
+            seen += every[0] < least
+    assert seen
 
 
 def test_an_estimator_that_always_fails_costs_the_others_nothing(tmp_path):

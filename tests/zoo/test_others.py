@@ -6,9 +6,11 @@ from scipy.stats import chi2
 
 from fogproof.domains import Interval, UnitSphere
 from fogproof.zoo.bug import Planted
+from fogproof.zoo.comparison import page
 from fogproof.zoo.laws import directions, even, hg
 from fogproof.zoo.others import other_tests, p_values
 from fogproof.zoo.others.cells import expected, pooled
+from fogproof.zoo.running import ZooRow
 
 SPHERE = Planted(lambda u: directions(2 * u[:, 0] - 1, u[:, 1]), even, UnitSphere(), 2)
 BENT = Planted(lambda u: directions(2 * u[:, 0] ** 1.3 - 1, u[:, 1]), even, UnitSphere(), 2)
@@ -44,3 +46,26 @@ def test_small_cells_are_put_together_and_empty_ones_reject():
 
 def test_what_is_no_sampler_is_not_asked():
     assert set(p_values(object(), 1).values()) == {None}
+
+
+def test_the_page_counts_kills_and_false_alarms_of_each_test():
+    def row(name, status, p, causes=("shape",)):
+        return ZooRow(
+            name,
+            name,
+            "thread#1",
+            causes,
+            status,
+            cause="shape",
+            named=True,
+            samples=7,
+            others={"nori": p, "kstest": None},
+        )
+
+    rows = [row("field/a", "killed", 1e-4), row("field/b", "survived", 0.5), row("right/c", "passed", 1e-9, ())]
+    text = page(rows, 1_000_000, 1e-6)
+    nori = next(line for line in text.splitlines() if line.startswith("| Nori"))
+    assert [cell.strip() for cell in nori.split("|")[4:-1]] == ["1 of 2", "0", "1", "1 of 1", "1", "0"]
+    assert "`field/b` (field/b): survived" in text
+    assert "| field/a | thread#1 | shape | 7 |" in text
+    assert "Right subjects: 0 of 1 rejected" in text

@@ -33,6 +33,7 @@ _COMMANDS = {
     "stability": "Measure formulas against 50-digit truth in regions where floating point fails.",
     "report": "Make the page of a run again, or compare two runs.",
     "zoo": "Run known bugs against the checks, and print which are killed.",
+    "bench": "Measure speed against error, as ratios.",
     "gallery": "Draw the theory's pictures: oracle's curves, estimators' samples.",
 }
 

@@ -22,7 +22,7 @@ from fogproof.errors import InvalidValueError
     "folder",
     metavar="DIR",
     type=click.Path(path_type=Path, file_okay=False),
-    help="Keep the rows in DIR/zoo.jsonl; a run that was stopped goes on there.",
+    help="Keep the rows in DIR/zoo.jsonl, where a stopped run goes on, and write DIR/zoo.md.",
 )
 @click.option(
     "--samples", type=click.IntRange(min=1000), default=1_000_000, show_default=True, help="Most of one check."
@@ -97,6 +97,10 @@ def command(
         say(f"stopped after {len(rows)} of {len(chosen)} bugs", err=True)
     order = {bug.name: i for i, bug in enumerate(chosen)}
     rows.sort(key=lambda row: order[row.name])
+    if folder is not None:
+        from fogproof.zoo.comparison import page
+
+        (folder / "zoo.md").write_text(page(rows, samples, alpha))
     say(summary(rows), err=True)
     say(f"{len(rows)} of {len(chosen)} run; seed {seed}", err=True)
     return stopped or int(not all(count.good for count in counts(rows)))

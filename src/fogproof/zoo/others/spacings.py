@@ -32,6 +32,8 @@ def _p_value(sampler: Any, rng: np.random.Generator) -> float:
     if not np.all(np.isfinite(x)):
         return 0.0
     room = _gaps(sampler, x) if x.ndim == 1 else _balls(sampler, x)
+    if not np.all(room >= 0):  # a density below 0, or none
+        return 0.0
     bins = round(len(room) ** (1 / 3))
     counts = np.bincount(np.minimum((-np.expm1(-room) * bins).astype(int), bins - 1), minlength=bins)
     mean = len(room) / bins

@@ -1,0 +1,84 @@
+"""The record of a run: ratios and the machine as JSON, earlier runs beside it, the table and the figures."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from fogproof.bench.benchmark import Benchmark
+from fogproof.bench.figure import TimeErrorPlane, drawable
+from fogproof.bench.measuring import WayTime, machine, table
+from fogproof.reports.gallery.plots import render_plot
+
+SCHEMA = "fogproof/bench/1"
+_PAGE = """\
+# Speed against error
+
+Written by `fogproof bench -o build/bench` (`make bench`) on {processor}, {cores} cores, load {load}, Python {python},
+NumPy {numpy}. Every way of a benchmark runs once in a round, in turn, and times are the processor's; a ratio is the median, over
+{rounds} rounds or more, of a way's time to that of the first way of its benchmark, with quartiles. Errors are medians of relative
+ones. The front holds the ways that no other beats in both time and error. Estimators are compared by variance x time.
+
+{table}
+
+{missed}
+"""
+
+
+def run_record(rows: Iterable[WayTime], started: str, seconds: float) -> dict[str, Any]:
+    """Return the record, ready for JSON."""
+    ways = [asdict(row) for row in rows]
+    return {"schema": SCHEMA, "started": started, "seconds": round(seconds, 1), "machine": machine(), "ways": ways}
+
+
+def write_record(record: Mapping[str, Any], rows: list[WayTime], benchmarks: Iterable[Benchmark], folder: Path) -> Path:
+    """Write bench.json, a line of bench.jsonl (the history), bench.md and figures; return the page's path."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "bench.json").write_text(json.dumps(record, indent=1) + "\n")
+    with (folder / "bench.jsonl").open("a") as history:
+        history.write(json.dumps(record) + "\n")
+    figures = folder / "figures"
+    for benchmark in benchmarks:
+        mine = tuple(row for row in rows if row.benchmark == benchmark.name)
+        if drawable(mine):
+            figures.mkdir(exist_ok=True)
+            render_plot(TimeErrorPlane(benchmark.title, mine), f"speed-{benchmark.name}").save(figures)
+    path = folder / "bench.md"
+    path.write_text(page(record, rows))
+    return path
+
+
+def page(record: Mapping[str, Any], rows: list[WayTime]) -> str:
+    """Return the page as Markdown."""
+    on = record["machine"]
+    missed = [f"{row.benchmark}, {row.way}" for row in rows if row.met is False]
+    return _PAGE.format(
+        processor=on["processor"],
+        cores=on["cores"],
+        load=f"{on['load'][0]:.1f}" if on["load"] else "unknown",
+        python=on["python"],
+        numpy=on["versions"]["numpy"],
+        rounds=min((row.rounds for row in rows), default=0),
+        table=table(rows),
+        missed=f"Goals not met: {'; '.join(missed)}." if missed else "Every goal is met.",
+    )
+
+
+def history(folder: Path) -> list[dict[str, Any]]:
+    """Return the records of earlier runs in a folder, oldest first."""
+    path = folder / "bench.jsonl"
+    return [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
+
+
+def changes(rows: Iterable[WayTime], before: Mapping[str, Any]) -> list[str]:
+    """Return which ratios lie outside the quartiles of an earlier run, and theirs outside of these: what has changed."""
+    old = {(way["benchmark"], way["way"]): way for way in before["ways"]}
+    found = []
+    for row in rows:
+        was = old.get((row.benchmark, row.way))
+        if was and (row.low > was["high"] or row.high < was["low"]):
+            found.append(f"{row.benchmark}, {row.way}: {was['ratio']:.3g} -> {row.ratio:.3g}")
+    return found
