@@ -22,7 +22,7 @@ THROUGH = Ray((0.1, 0.2, -2.0), (0.0, 0.0, 1.0), 4.0)
 
 
 @dataclass(frozen=True, eq=False)
-class Glow:
+class BlackBodyCollisions:
     """What delta tracking meets of a medium that glows [W/(m^2 sr nm)]: (1 - albedo) L_e at the first real collision."""
 
     medium: TemperatureGrid
@@ -44,10 +44,10 @@ def cases() -> list[EstimatorCase]:
         EstimatorCase(
             name="emission/fire",
             title="A grid of temperatures that glows as black bodies do, met by delta tracking",
-            make=lambda: Glow(FIRE),
+            make=lambda: BlackBodyCollisions(FIRE),
             reference=lambda: emitted_radiance(FIRE, THROUGH),
             oracle="emitted_radiance",
             source="Planck 1900; volume rendering equation with emission alone",
-            twin=Twin("degrees Celsius", lambda: Glow(TemperatureGrid(SMOKE, HEAT - 273.15, 1.5e-6))),
+            twin=Twin("degrees Celsius", lambda: BlackBodyCollisions(TemperatureGrid(SMOKE, HEAT - 273.15, 1.5e-6))),
         )
     ]
