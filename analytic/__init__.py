@@ -59,6 +59,7 @@ from fogproof.analytic.phase.functions import (
     phase_pdf,
     phase_quantile,
 )
+from fogproof.analytic.phase.microflakes import microflake_pdf
 from fogproof.analytic.phase.rayleigh_coefficient import rayleigh_scattering_coefficient
 from fogproof.analytic.phase.varying import phase_pdf_at
 from fogproof.analytic.proven.golden import Golden, golden_values
@@ -124,6 +125,7 @@ __all__ = [
     "mean_path_length",
     "mean_scatterings",
     "mean_square_displacement",
+    "microflake_pdf",
     "optical_thickness",
     "path_length_mean",
     "path_length_transform",
