@@ -15,7 +15,7 @@ import numpy as np
 from fogproof.errors import InvalidInputError, InvalidValueError, UnsupportedError
 from fogproof.estimators import FractalNoise
 from fogproof.input_files import open_regular
-from fogproof.scene import AnyMedium, Isotropic, Procedural, TransformedMedium, VoxelGrid
+from fogproof.scene import AnyMedium, Isotropic, Procedural, VoxelGrid
 from fogproof.scene.arrays import FloatArray
 from fogproof.scene.kinds import ByKind
 from fogproof.scene.media import KINDS as MEDIA
@@ -93,10 +93,11 @@ class GridFile:
         if self.sha256 and sha256_of(Path(self.path)) != self.sha256:
             raise InvalidInputError(f"the grid {self.path} has changed since the study was started", self.path)
         more: dict[str, Any] = {"interpolation": self.interpolation, "albedo": self.albedo, "phase": self.phase}
-        found = read_voxel_grid(self.path, scale=self.scale, lower=self.lower, upper=self.upper, **more)
-        if isinstance(found, TransformedMedium):
+        found: Any = read_voxel_grid(self.path, scale=self.scale, lower=self.lower, upper=self.upper, **more)
+        if hasattr(found, "to_world"):
             raise UnsupportedError(f"{self.path} is turned in the world; a study takes grids along the axes", "path")
-        return found
+        grid: VoxelGrid = found
+        return grid
 
 
 def sha256_of(path: Path) -> str:
