@@ -67,8 +67,8 @@ def command(names: tuple[str, ...], folder: Path | None, brief: bool, force: boo
                         say(_row(width, row))
     except KeyboardInterrupt as stop:
         stopped = code_of(stop)
-        done = len({row.formula for row in measured})
-        say(f"stopped after {done} of {len(chosen)} formulas; these are kept", err=True)
+        reached = len({row.formula for row in measured})
+        say(f"stopped after {reached} of {len(chosen)} formulas; these are kept", err=True)
     seconds = time.perf_counter() - clock
     told = run_record(
         measured,
@@ -93,10 +93,8 @@ def command(names: tuple[str, ...], folder: Path | None, brief: bool, force: boo
     for name, form in hidden(measured):
         say(f"{name}: the naive form {form!r} fails in none of the regions", err=True)
     compared = sum(row.points for row in measured)
-    say(
-        f"{len({row.formula for row in measured})} of {len(chosen)} formulas, {compared} comparisons, {len(broken)} bounds broken, {seconds:.1f} s",
-        err=True,
-    )
+    done = f"{len({row.formula for row in measured})} of {len(chosen)} formulas"
+    say(f"{done}, {compared} comparisons, {len(broken)} bounds broken, {seconds:.1f} s", err=True)
     return stopped or exit_code(measured)
 
 
