@@ -10,6 +10,7 @@ from fogproof.analytic.derivatives.gradient import gradient
 from fogproof.analytic.derivatives.path_length import path_length_mean, path_length_transform, path_length_variance
 from fogproof.analytic.derivatives.scattering_counts import scattering_count_law, scattering_count_mean
 from fogproof.analytic.images.image import image
+from fogproof.analytic.media.black_body import black_body_radiance
 from fogproof.analytic.media.coefficients import Coefficients, coefficients
 from fogproof.analytic.multiple.ball import (
     ball_albedo,
@@ -101,6 +102,7 @@ __all__ = [
     "ball_radiance",
     "ball_radiance_orders",
     "ball_source",
+    "black_body_radiance",
     "chandrasekhar_h",
     "coefficients",
     "delta_m",
