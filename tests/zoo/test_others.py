@@ -13,9 +13,9 @@ from fogproof.zoo.others.cells import expected, pooled
 from fogproof.zoo.running import ZooRow
 
 SPHERE = Planted(lambda u: directions(2 * u[:, 0] - 1, u[:, 1]), even, UnitSphere(), 2)
-BENT = Planted(lambda u: directions(2 * u[:, 0] ** 1.3 - 1, u[:, 1]), even, UnitSphere(), 2)
+BENT = Planted(lambda u: directions(2 * u[:, 0] ** 3 - 1, u[:, 1]), even, UnitSphere(), 2)
 LINE = Planted(lambda u: np.sqrt(u[:, 0]), lambda x: 2 * x, Interval(0, 1), 1)
-BENT_LINE = Planted(lambda u: u[:, 0] ** 0.65, lambda x: 2 * x, Interval(0, 1), 1)
+BENT_LINE = Planted(lambda u: u[:, 0] ** 1.5, lambda x: 2 * x, Interval(0, 1), 1)
 
 
 @pytest.mark.parametrize("test", other_tests(), ids=lambda test: test.name)
