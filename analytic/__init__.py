@@ -10,6 +10,7 @@ from fogproof.analytic.derivatives.gradient import gradient
 from fogproof.analytic.derivatives.path_length import path_length_mean, path_length_transform, path_length_variance
 from fogproof.analytic.derivatives.scattering_counts import scattering_count_law, scattering_count_mean
 from fogproof.analytic.images.image import image
+from fogproof.analytic.media.black_body import black_body_radiance
 from fogproof.analytic.media.coefficients import Coefficients, coefficients
 from fogproof.analytic.multiple.ball import (
     ball_albedo,
@@ -58,6 +59,7 @@ from fogproof.analytic.phase.functions import (
     phase_pdf,
     phase_quantile,
 )
+from fogproof.analytic.phase.microflakes import microflake_pdf
 from fogproof.analytic.phase.rayleigh_coefficient import rayleigh_scattering_coefficient
 from fogproof.analytic.phase.varying import phase_pdf_at
 from fogproof.analytic.proven.golden import Golden, golden_values
@@ -100,6 +102,7 @@ __all__ = [
     "ball_radiance",
     "ball_radiance_orders",
     "ball_source",
+    "black_body_radiance",
     "chandrasekhar_h",
     "coefficients",
     "delta_m",
@@ -122,6 +125,7 @@ __all__ = [
     "mean_path_length",
     "mean_scatterings",
     "mean_square_displacement",
+    "microflake_pdf",
     "optical_thickness",
     "path_length_mean",
     "path_length_transform",

@@ -43,6 +43,7 @@ class Declaration:
     source      author, year, equation
     example     arguments of a small question, as JSON puts them
     answer      the function that answers programs, with the same arguments, if the declared one returns no `Reference`
+    of          whether it asks about another quantity, which comes first; programs give that as a request, `of`
     """
 
     unit: str
@@ -50,6 +51,7 @@ class Declaration:
     source: str
     example: dict[str, Any]
     answer: Callable[..., Reference] | None = None
+    of: bool = False
 
 
 def quantity(
@@ -59,9 +61,10 @@ def quantity(
     source: str,
     example: dict[str, Any],
     answer: Callable[..., Reference] | None = None,
+    of: bool = False,
 ) -> Callable[[Function], Function]:
     """Declare a function of the oracle to be a quantity; see `Declaration`. Shapes that do not broadcast are refused by name."""
-    declared = Declaration(unit, convention, source, example, answer)
+    declared = Declaration(unit, convention, source, example, answer, of)
 
     def declare(function: Function) -> Function:
         @functools.wraps(function)

@@ -18,6 +18,7 @@ from fogproof.estimators.paths.spectral import SpectralPathTracer
 from fogproof.estimators.paths.tracer import PathTracer, Roulette
 from fogproof.estimators.phase.directions import Cosines, Directions
 from fogproof.estimators.phase.functions import phase_table, phase_value
+from fogproof.estimators.phase.microflakes import MicroflakeDirections
 from fogproof.estimators.tracking.compiled import CompiledField
 from fogproof.estimators.tracking.decomposition import DecompositionTransmittance
 from fogproof.estimators.tracking.delta import DeltaFreePath, DeltaTransmittance, delta_tracking
@@ -63,6 +64,7 @@ __all__ = [
     "MarchedAirlight",
     "MarchedFreePath",
     "MarchedTransmittance",
+    "MicroflakeDirections",
     "NextFlightTransmittance",
     "PathTracer",
     "PointSourceWalks",

@@ -214,7 +214,7 @@ def fault_of(run: Run, end: Ended) -> str:
         return ""
     if end.code not in run.codes:
         return f"exit code {end.code}"
-    if "Traceback" in text or "Warning:" in text or '"code": "internal"' in text:
+    if "Traceback" in text or re.search("(?<!Syntax)Warning:", text) or '"code": "internal"' in text:
         return "a fault of our own"
     if end.code == 2 and run.words[:1] != ["oracle"] and not end.err.strip():
         return "refused without a sentence"

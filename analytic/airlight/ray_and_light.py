@@ -90,7 +90,8 @@ def place(ray: Ray | FlatRays, position: tuple[float, float, float], exact: bool
     endless = np.isinf(length)
     b, b_low = sum_pair(a, np.where(endless, 0.0, length))
     b = np.where(endless, np.inf, b + (b_low + a_low))
-    size = np.abs(origin).sum(axis=0) + np.abs(light).sum() + 2 * np.abs(q).sum(axis=0)
+    with np.errstate(over="ignore"):  # then the error is infinite, and says so
+        size = np.abs(origin).sum(axis=0) + np.abs(light).sum() + 2 * np.abs(q).sum(axis=0)
     uncertainty = (64 * EPS * EPS if exact else EPS) * size
     return Placement(h, h_low, a, a_low, b, length, near, near_low, q, q_low, direction, excess, uncertainty)
 

@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
-from fogproof.analytic.declaration import declaration_of
+from fogproof.analytic.declaration import FOG, declaration_of
+from fogproof.analytic.declaration import quantity as declared
 from fogproof.analytic.derivatives.discs import ALONG_A_RAY, discs
 from fogproof.analytic.derivatives.from_values import NODES, Disc, Function, derivative_from_values, differentiated
 from fogproof.analytic.derivatives.parameters import Parameter, parameter
@@ -28,6 +29,9 @@ SOURCE = "Berrut & Trefethen 2004, Barycentric Lagrange interpolation, eq. 9.4"
 LIMITS = {"albedo": (0.0, 1.0), "g": (-1.0, 1.0), "mu0": (0.0, 1.0), "mu": (0.0, 1.0)}
 """Where a parameter of that name lies; all others are taken to be >= 0 if they are, and free if they are not."""
 
+AHEAD = {"origin": [0, 0, 0], "direction": [0, 0, 1], "length": 2}
+"""Of the example."""
+
 FACTORS = ("albedo", "intensity", "irradiance", "radiance", "background", "ambient", "emission")
 """Parameters that light along a ray is proportional to, one term of it at a time, at the same extinction."""
 
@@ -35,6 +39,13 @@ SAFETY = 10.0
 """By how much the difference of two interpolations is taken to be too small."""
 
 
+@declared(
+    unit="unit of the quantity / unit of the parameter",
+    convention="by one parameter alone; of a homogeneous medium sigma_t changes at the same albedo, albedo at the same sigma_t",
+    source=SOURCE,
+    example={"of": {"quantity": "transmittance", "medium": FOG, "ray": AHEAD}, "wrt": "medium.sigma_t"},
+    of=True,
+)
 def gradient(quantity: str | Callable[..., Reference], wrt: str, **arguments: Any) -> Reference:
     """Return the derivative of a quantity of the oracle by one of its parameters.
 
@@ -73,7 +84,8 @@ def named(quantity: str | Callable[..., Reference]) -> tuple[str, Callable[..., 
     from fogproof import analytic
 
     function = getattr(analytic, quantity, None) if isinstance(quantity, str) else quantity
-    if function is None or declaration_of(function) is None:
+    known = declaration_of(function)
+    if function is None or known is None or known.of:
         raise InvalidValueError("quantity", "must be a quantity of fogproof.analytic, or its name", quantity)
     return str(function.__name__), function
 

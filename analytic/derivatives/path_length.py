@@ -14,18 +14,31 @@ from typing import Any
 import numpy as np
 
 from fogproof.analytic.arithmetic.error_free import EPS
+from fogproof.analytic.declaration import quantity as declared
 from fogproof.analytic.derivatives.discs import HALVINGS, LENGTHS, collides_again
 from fogproof.analytic.derivatives.from_values import Disc
 from fogproof.analytic.derivatives.gradient import PROVEN, least_error, named
 from fogproof.contracts import Reference
 from fogproof.errors import UnsupportedError
 from fogproof.scene import Medium, Scene
+from fogproof.scene.arrays import AxisArray
 from fogproof.validate import as_float_array, require
+
+LENGTHS_COUNT = "lengths inside the medium, in mean free paths where the quantity's lengths are, else in metres"
+HALF_SPACE = {"quantity": "half_space_reflectance", "albedo": 0.9, "mu0": 0.5}
+"""Of the declarations and their examples."""
 
 SOURCE = "Feynman-Kac; Ivanov & Gutshabash 1974, on the duration of random walks of light"
 
 
-def path_length_transform(quantity: str | Callable[..., Reference], s: Any, **arguments: Any) -> Reference:
+@declared(
+    unit="that of the quantity",
+    convention=f"every path is weighed by exp(-s l); {LENGTHS_COUNT}",
+    source=SOURCE,
+    example={"of": HALF_SPACE, "s": [0, 0.1, 1]},
+    of=True,
+)
+def path_length_transform(quantity: str | Callable[..., Reference], s: AxisArray, **arguments: Any) -> Reference:
     """Return the quantity with every path of length l inside the medium weighed by exp(-s l).
 
     quantity   a function of `fogproof.analytic` or its name: one with an albedo (slab, half space, ball, rod), or one along
@@ -54,6 +67,13 @@ def path_length_transform(quantity: str | Callable[..., Reference], s: Any, **ar
     return Reference(value.reshape(end), error.reshape(end), found[0].method if found else "", SOURCE)
 
 
+@declared(
+    unit="m, or mean free paths",
+    convention=LENGTHS_COUNT,
+    source=SOURCE,
+    example={"of": HALF_SPACE},
+    of=True,
+)
 def path_length_mean(quantity: str | Callable[..., Reference], **arguments: Any) -> Reference:
     """Return the mean length inside the medium of the paths that a quantity counts; arguments as `path_length_transform`.
 
@@ -68,6 +88,13 @@ def path_length_mean(quantity: str | Callable[..., Reference], **arguments: Any)
     return _quotient(slope, whole)
 
 
+@declared(
+    unit="m^2, or mean free paths^2",
+    convention=LENGTHS_COUNT,
+    source=SOURCE,
+    example={"of": HALF_SPACE},
+    of=True,
+)
 def path_length_variance(quantity: str | Callable[..., Reference], **arguments: Any) -> Reference:
     """Return the variance of the length inside the medium of the paths that a quantity counts, see `path_length_mean`."""
     whole, slope, bend = _moments(*named(quantity), arguments, 2)

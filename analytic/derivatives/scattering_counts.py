@@ -13,15 +13,27 @@ import numpy as np
 
 from fogproof import analytic
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
+from fogproof.analytic.declaration import quantity as declared
 from fogproof.analytic.derivatives.gradient import gradient, named
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError, UnsupportedError
+from fogproof.scene.arrays import Count
+
+ROD = {"quantity": "rod_reflectance", "albedo": 0.5, "length": 1}
+"""Of the examples."""
 
 SOURCE = "Irvine 1964, The formation of absorption bands and the distribution of photon optical paths"
 
 
+@declared(
+    unit="1",
+    convention="n counts scatterings, 0 first; probabilities of light that is counted, not of light that is sent",
+    source=SOURCE,
+    example={"of": ROD, "count": 3},
+    of=True,
+)
 def scattering_count_law(
-    quantity: str | Callable[..., Reference], albedo: float, count: int, **arguments: Any
+    quantity: str | Callable[..., Reference], albedo: float, count: Count, **arguments: Any
 ) -> Reference:
     """Return the probabilities that light which a quantity counts has scattered 0 … count times: (..., count + 1).
 
@@ -50,6 +62,13 @@ def scattering_count_law(
     return Reference(value, error, terms.method, SOURCE)
 
 
+@declared(
+    unit="1",
+    convention="scatterings of light that is counted",
+    source=SOURCE,
+    example={"of": ROD},
+    of=True,
+)
 def scattering_count_mean(quantity: str | Callable[..., Reference], albedo: float, **arguments: Any) -> Reference:
     """Return the mean number of scatterings of light that a quantity counts, albedo d ln Q/d albedo.
 

@@ -142,7 +142,7 @@ def _moments(
     if estimate == "power-series":
         whole = float(max(ray.sigma) * sum(ray.length))
         pivot = whole if pivot is None else number("pivot", pivot, "must be finite and >= 0", 0)
-        reach = number("reach", reach, "must be finite and > 0", 0, open_ends=True)
+        reach = number("reach", reach, "must lie in (0, 10000]", 1e-300, 1e4)
         return walk_estimates.power_series(ray, pivot, reach)
     if estimate not in get_args(Estimate):
         raise InvalidValueError("estimate", f"must be one of {', '.join(get_args(Estimate))}", estimate)

@@ -10,9 +10,24 @@ import math
 
 from fogproof.analytic.arithmetic.error_free import EPS
 from fogproof.analytic.variance.voxel_ray import EstimateMoments, VoxelRay
+from fogproof.errors import UnsupportedError
 
 ROUNDING = 256 * EPS
 """Of a sum of exponentials of sums over 64 voxels, relative to its terms and multiplied with the optical depth below."""
+
+LARGEST = 300.0
+"""Exponent of the greatest mean square that is answered."""
+
+UNDERFLOWS = 750.0
+"""Exponent beyond which an exponential is 0."""
+
+
+def _allowed(exponent: float) -> float:
+    """Return the exponent of a mean square, or say why it is out of range."""
+    if exponent > LARGEST:
+        what = f"the mean square of the estimate has the size exp({exponent:.3g})"
+        raise UnsupportedError(f"{what}: take a larger majorant", "majorant")
+    return exponent
 
 
 def _voxels(ray: VoxelRay) -> list[tuple[float, float]]:
@@ -40,7 +55,7 @@ def weighted(ray: VoxelRay, m: float) -> EstimateMoments:
         ends = m * sigma / (sigma + null)
         cost += m * alive * way * _share(ends * way)
         alive *= math.exp(-ends * way)
-    second = math.exp(exponent)
+    second = math.exp(_allowed(exponent))
     grown = 1 + abs(exponent) / (1 + ray.depth)
     return _moments(ray.depth, second, cost, second * grown)
 
@@ -71,14 +86,14 @@ def next_flight(ray: VoxelRay, m: float) -> EstimateMoments:
         left, behind = left - sigma * way, behind - way
         a, T = math.exp(-m * max(behind, 0.0)), math.exp(-max(left, 0.0))
         rate = 2 * sigma - sigma * sigma / m
-        scale = m * (1 - sigma / m) ** 2 * math.exp(-lost - rate * way) * way
+        scale = m * (1 - sigma / m) ** 2 * math.exp(_allowed(-lost - rate * way)) * way
         # From the end of the voxel backwards both terms decay: by m + sigma - rate > 0 and 2 m - rate > 0.
         first = 2 * a * T * _share((m + sigma - rate) * way)
         other = a * a * _share((2 * m - rate) * way)
         second += scale * (first - other)
         size += scale * (first + other)
         lost += rate * way
-    return _moments(depth, second, m * far, size * (1 + m * far))
+    return _moments(depth, second, m * far, size * (1 + min(m * far, UNDERFLOWS)))
 
 
 def power_series(ray: VoxelRay, pivot: float, reach: float) -> EstimateMoments:
@@ -94,12 +109,13 @@ def power_series(ray: VoxelRay, pivot: float, reach: float) -> EstimateMoments:
     second = sum(
         float(way / whole) * (pivot - float(whole * s)) ** 2 for s, way in zip(ray.sigma, ray.length, strict=True)
     )
-    total = size = 0.0
-    cost, reached, k, together = 0.0, 1.0, 0, 1.0
+    if 4 * second > LARGEST**2 or second > LARGEST * reach:
+        what = f"looks are off the pivot by {math.sqrt(second):.3g} (root mean square), which makes the variance of the series huge"
+        raise UnsupportedError(f"{what}: take a pivot nearer to the optical depth, or a larger reach", "pivot")
+    total, size, k, together = 0.0, 0.0, 0, 1.0
     while True:
-        # Sum over l >= k of E[Y]^(l - k) k!/l!, the part of the exponential series that follows.
-        tail, part, l = 0.0, 1.0, k  # noqa: E741
-        bound = 0.0
+        # Sum over l >= k of E[Y]^(l - k) k!/l!, the part of the exponential series that follows; all but the first stand twice.
+        tail, bound, part, l = 0.0, 0.0, 1.0, k  # noqa: E741
         while abs(part) > 1e-20 * max(abs(tail), 1e-300) or l < k + abs(first):
             tail, bound = tail + part * (1 if l == k else 2), bound + abs(part) * 2
             l += 1  # noqa: E741
@@ -107,10 +123,13 @@ def power_series(ray: VoxelRay, pivot: float, reach: float) -> EstimateMoments:
         total, size = total + together * tail, size + together * bound
         k += 1
         goes_on = min(1.0, reach / k)
-        reached *= goes_on
-        cost += reached
         together *= second / (k * k * goes_on)
-        if k > reach and together * math.exp(abs(first)) < 1e-20 * size and reached < 1e-18 * cost:
+        if k * k * goes_on > 4 * second and together * math.exp(abs(first)) < 1e-20 * size:
             break
+    cost, reached, order = 0.0, 1.0, 0
+    while reached > 1e-18 * max(cost, 1e-300):
+        order += 1
+        reached *= min(1.0, reach / order)
+        cost += reached
     scale = math.exp(-2 * pivot)
     return _moments(ray.depth, scale * total, cost, scale * size * (1 + k / 64 + pivot))

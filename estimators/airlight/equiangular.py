@@ -13,6 +13,9 @@ from fogproof.errors import InvalidValueError
 from fogproof.estimators.blocks import IN_PLACE, blocks
 from fogproof.validate import number
 
+_FARTHEST = 1e150
+"""Distance of a light whose square is still a number [m]."""
+
 
 @dataclass(frozen=True)
 class Equiangular:
@@ -33,6 +36,12 @@ class Equiangular:
         number(
             "h", self.h, "must be finite and > 0 [m]", 0, open_ends=True, fix="a light on the ray needs another sampler"
         )
+        if self.h > _FARTHEST:
+            raise InvalidValueError(
+                "h",
+                f"must be at most {_FARTHEST:g} [m]: from farther away the ray is seen under no angle at all",
+                self.h,
+            )
         number("a", self.a, "must be finite [m]")
         if not self.b > self.a:
             raise InvalidValueError("b", f"must be greater than a = {self.a:g} [m]", self.b)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -93,7 +94,10 @@ def foot(ray: Ray, position: tuple[float, float, float]) -> tuple[float, float]:
     """Return the distance h of a point from the ray's line [m], and the distance from the ray's origin to the foot of it."""
     towards = np.asarray(position) - ray.origin
     along = float(towards @ ray.direction)
-    return float(np.linalg.norm(towards - along * ray.direction)), along
+    across = towards - along * ray.direction
+    with np.errstate(over="ignore"):  # the squares of more than 1e154 m
+        h = float(np.linalg.norm(across))
+    return h if h < math.inf else math.hypot(*across), along
 
 
 def at_a_point(position: tuple[float, float, float], intensity: float, ray: Ray, s: np.ndarray) -> Illumination:

@@ -13,6 +13,9 @@ import numpy as np
 from fogproof.estimators.phase.polar import Polar
 from fogproof.scene.phase import VonMisesFisher
 
+FLAT = 1e-17
+"""|kappa| below which the density is constant to the last digit."""
+
 OVERFLOWS = 40.0
 """|kappa| beyond which 1 + mu comes from 1 - mu: with it smaller than that only below a probability of exp(-40)."""
 
@@ -20,7 +23,7 @@ OVERFLOWS = 40.0
 def density(phase: VonMisesFisher, versine: np.ndarray, coversine: np.ndarray) -> np.ndarray:
     """Return the phase function [1/sr]."""
     a = abs(phase.kappa)
-    if a == 0:
+    if a < FLAT:
         return np.full_like(versine, 0.25 / np.pi)
     from_peak = versine if phase.kappa > 0 else coversine
     with np.errstate(under="ignore"):
@@ -31,7 +34,7 @@ def density(phase: VonMisesFisher, versine: np.ndarray, coversine: np.ndarray) -
 def polar(phase: VonMisesFisher, xi: np.ndarray) -> Polar:
     """Return scattering angles and their pdf."""
     a, rest = abs(phase.kappa), 1 - xi
-    if a == 0:
+    if a < FLAT:
         return Polar(2 * rest, 2 * xi, np.full_like(xi, 0.25 / np.pi))
     near, far = (xi, rest) if phase.kappa > 0 else (rest, xi)
     lost = -math.expm1(-2 * a)

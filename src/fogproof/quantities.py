@@ -11,15 +11,21 @@ import inspect
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache, cached_property, partial
 from types import FunctionType
 from typing import Any, get_type_hints
 
 from fogproof import analytic
 from fogproof.analytic.declaration import Declaration, declaration_of
 from fogproof.contracts import Reference
+from fogproof.errors import UnsupportedError
 from fogproof.scene import ImageScene, Scene
 from fogproof.scene.arrays import Numbers
+
+OF = ("quantity", "arguments", "albedo")
+"""Arguments of what asks about another quantity that stand in that one's request."""
+
+OF_MEANS = "the request of the quantity that is asked about: its name and its arguments"
 
 
 @dataclass(frozen=True)
@@ -31,6 +37,8 @@ class Quantity:
     function    takes the arguments by name
     arguments   name -> its type, or (type, default)
     meanings    name -> what the argument means; an argument that says it all by its type may be missing
+    given       arguments as read -> those of the function of `fogproof.analytic`
+    of          whether it asks about another quantity, whose request is the argument `of`
     unit, convention, source, example  as declared, see `fogproof.analytic.declaration.Declaration`
     """
 
@@ -43,6 +51,8 @@ class Quantity:
     convention: str
     source: str
     example: dict[str, Any]
+    given: Callable[..., dict[str, Any]] = dict
+    of: bool = False
 
     def to_dict(self) -> dict[str, Any]:
         """Return what is known of the quantity, JSON-ready; an argument that may be left out is marked so."""
@@ -75,11 +85,16 @@ def quantities() -> dict[str, Quantity]:
 
 def _quantity(name: str, function: FunctionType, told: Declaration) -> Quantity:
     arguments, call = _arguments(function), told.answer or function
+    given: Callable[..., dict[str, Any]] = dict
     meanings = {**_meanings_of(Scene), **_meanings_of(function)}
     if list(arguments) == ["scene"]:  # programs give a scene by its keys
         scene: type[Scene] | type[ImageScene] = arguments["scene"]
         arguments, call = _fields(scene), lambda **keys: function(scene(**keys))
+        given = lambda **keys: {"scene": scene(**keys)}  # noqa: E731
         meanings = {**_meanings_of(scene), **meanings}
+    if told.of:
+        arguments = {"of": dict[str, Any]} | {name: kind for name, kind in arguments.items() if name not in OF}
+        meanings["of"], call = OF_MEANS, partial(_of_another, function)
     documentation = inspect.getdoc(function) or ""
     return Quantity(
         name=name,
@@ -91,7 +106,17 @@ def _quantity(name: str, function: FunctionType, told: Declaration) -> Quantity:
         convention=told.convention,
         source=told.source,
         example=told.example,
+        given=given,
+        of=told.of,
     )
+
+
+def _of_another(function: Callable[..., Reference], of: tuple[Quantity, dict[str, Any]], **keys: Any) -> Reference:
+    """Return what a function says of another quantity, whose request has been read."""
+    asked, arguments = of
+    if "albedo" in inspect.signature(function).parameters and "albedo" not in arguments:
+        raise UnsupportedError(f"{asked.name} has no albedo, so that scatterings are not counted", "of.quantity")
+    return function(asked.name, **keys, **asked.given(**arguments))
 
 
 def _arguments(function: FunctionType) -> dict[str, Any]:

@@ -168,6 +168,22 @@ def _spheres(draw: st.DrawFn) -> dict[str, Any]:
     }
 
 
+def _hot(draw: st.DrawFn) -> dict[str, Any]:
+    grid = draw(of_kind("voxel-grid", MEDIA["voxel-grid"]))
+    grid = dataclasses.replace(grid, emission=0.0)
+    return {"grid": grid, "temperature": 800.0 + 300.0 * grid.sigma_t, "wavelengths": draw(st.floats(4e-7, 1e-5))}
+
+
+def _moved(draw: st.DrawFn) -> dict[str, Any]:
+    """A grid, turned about an axis and stretched."""
+    w = np.array(draw(directions))
+    turn = np.eye(3) - 2 * np.outer(w, w)
+    matrix = np.concatenate(
+        [turn @ np.diag(draw(st.tuples(*3 * [st.floats(0.5, 2.0)]))), np.reshape(draw(_points), (3, 1))], 1
+    )
+    return {"medium": draw(of_kind("voxel-grid", MEDIA["voxel-grid"])), "to_world": matrix}
+
+
 def _several(draw: st.DrawFn) -> dict[str, Any]:
     """Two media in boxes that may overlap."""
     one = of_kind("homogeneous", MEDIA["homogeneous"])
@@ -180,6 +196,8 @@ def _several(draw: st.DrawFn) -> dict[str, Any]:
 
 OWN: dict[str, Any] = {
     "composite": _several,
+    "transformed": _moved,
+    "temperature-grid": _hot,
     "spot": _spot,
     "rectangle": _rectangle,
     "environment-map": lambda draw: {

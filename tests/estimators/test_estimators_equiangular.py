@@ -70,6 +70,7 @@ def test_rounding_past_infinity_does_not_come_back_from_behind():
         (0.0, 0.0, 1.0, "h"),
         (-1.0, 0.0, 1.0, "h"),
         (math.inf, 0.0, 1.0, "h"),
+        (1e200, 0.0, 1.0, "h"),
         (1.0, -math.inf, 1.0, "a"),
         (1.0, 1.0, 1.0, "b"),
     ],

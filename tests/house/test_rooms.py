@@ -22,6 +22,7 @@ ALLOWED = {
     "src/fogproof/study/methods/airlight.py": "the same",
     "src/fogproof/study/question.py": "a solution of the ball under a sky alone",
     "src/fogproof/scene/surfaces/surface.py": "validates its own field",
+    "src/fogproof/scene/media/temperature_grid.py": "the same",
     "src/fogproof/relations/anywhere.py": "relations of a homogeneous box and of a slab",
     "src/fogproof/relations/paths.py": "relations of a grid, of the sun above a slab",
     "src/fogproof/relations/scenes.py": "relations of grids, of half spaces, of the sun above a slab",

@@ -17,6 +17,9 @@ from fogproof.errors import FogproofError
 from fogproof.images.compare import compare_image
 from fogproof.images.formats import format_of, layers
 from fogproof.images.pairs import compare_pictures
+from fogproof.scene.files import read_image_scene
+from fogproof.scene.lights import DirectionalLight
+from fogproof.scene.shapes import Slab
 
 LAMP = PointLight((0.6, 0.8, 4.0), 5.0)
 SCENE = ImageScene(
@@ -328,3 +331,41 @@ def test_differences_within_what_is_allowed_are_no_riddle(compared, truth, rng):
     # Single precision is off by about 1e-5 in some pixels and by nothing in most: skewed, and no noise.
     value = truth.value * (1 + 3e-5 * (rng.random(truth.value.shape) < 0.02))
     assert compared(value).verdict.outcome == "not rejected"
+
+
+def test_one_order_too_many_is_named_with_its_ratio():
+    """Light that a path tracer has scattered twice (`sun`, 1024 paths a pixel) is no tone curve."""
+    here = Path(__file__).parents[1]
+    done = compare_image(
+        [here / "data" / "sun-two-orders.npy"], read_image_scene(here.parent / "scenes/images/sun.toml")
+    )
+    assert done.verdict.cause == "one-order-too-many", done.verdict.diagnosis
+    assert "one scattering order too many, ratio 1.9" in done.verdict.diagnosis
+
+
+def test_orders_that_are_missing_are_named(compared, rng):
+    scene = ImageScene(
+        Medium(0.2, 1.8),
+        Perspective((0, 0, -3), (0.8, 0.3, 0), 0.9, Film(40, 30)),
+        "multiple",
+        DirectionalLight((0.6, 0.0, 0.8), 3.0),
+        Slab((0, 0, 0), (0, 0, -1), 1.0),
+    )
+    single = replace(scene, scattering="single")
+    few = compared(noisy(image(single).value, rng, 0.01), scene=scene)
+    assert (few.verdict.outcome, few.verdict.cause) == ("rejected", "one-order-too-few"), few.verdict.diagnosis
+    many = compared(noisy(image(scene).value, rng, 0.01), scene=single)
+    assert (many.verdict.outcome, many.verdict.cause) == ("rejected", "all-orders"), many.verdict.diagnosis
+
+
+def test_scattering_without_its_g_is_called_isotropic(compared, rng):
+    flat = image(replace(SCENE, medium=replace(SCENE.medium, phase=HenyeyGreenstein(0.0)))).value
+    done = compared(noisy(flat, rng, 0.01))
+    assert done.verdict.cause == "isotropic", done.verdict.diagnosis
+
+
+def test_depth_for_distance_is_named(compared, rng):
+    scene = ImageScene(Medium(0.4, 0.0), Perspective((0, 0, 0), (0, 0, 1), 1.5, Film(40, 30), wall=4.0), background=2.0)
+    flat = np.full((30, 40), 2.0 * np.exp(-0.4 * 4.0))
+    done = compared(noisy(flat, rng, 0.005), scene=scene)
+    assert done.verdict.cause == "depth-for-distance", done.verdict.diagnosis

@@ -37,7 +37,7 @@ def test_it_is_the_sum_of_its_directions():
     for r in range(rows):
         low, high = np.cos(np.pi * (r + 1) / rows), np.cos(np.pi * r / rows)
         for c in range(columns):
-            if IMAGE[r, c] < 0.05:
+            if IMAGE[r, c] < 0.3:
                 continue
             for z, dz in zip(low + (high - low) * (y + 1) / 2, weights * (high - low) / 2, strict=True):
                 for phi, dphi in zip(2 * np.pi / columns * (c + (y + 1) / 2), weights * np.pi / columns, strict=True):
@@ -45,7 +45,7 @@ def test_it_is_the_sum_of_its_directions():
                     to = np.array([sine * np.cos(phi), sine * np.sin(phi), z])
                     sun = DirectionalLight(tuple((-to / np.linalg.norm(to)).tolist()), IMAGE[r, c] * dz * dphi)
                     total += float(single_scattering(FOG, RAY, sun, shape=LAYER).value)
-    found = single_scattering(FOG, RAY, EnvironmentMap(np.where(IMAGE < 0.05, 0, IMAGE)), shape=LAYER)
+    found = single_scattering(FOG, RAY, EnvironmentMap(np.where(IMAGE < 0.3, 0, IMAGE)), shape=LAYER)
     assert abs(float(found.value) - total) <= float(found.error) + 1e-5 * total
     assert found.error < 1e-2 * found.value
 
@@ -95,9 +95,10 @@ def test_dark_pictures_and_colours():
     dark = EnvironmentMap(np.zeros((2, 4)))
     assert single_scattering(FOG, RAY, dark, shape=LAYER).value == 0
     assert np.all(Airlight(FOG, RAY, dark, "distance", shape=LAYER).draw(np.random.default_rng(0), 9).value == 0)
-    three = single_scattering(Medium((0.1, 0.2), (0.4, 0.4)), RAY, EnvironmentMap(IMAGE, (1.0, 2.0)), shape=LAYER)
-    one = single_scattering(Medium(0.2, 0.4), RAY, EnvironmentMap(IMAGE, 2.0), shape=LAYER)
-    assert abs(three.value[1] - one.value) <= three.error[1] + one.error
+    sun = [[0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0]]
+    both = single_scattering(Medium((0.1, 0.2), (0.4, 0.4)), RAY, EnvironmentMap(sun, (1.0, 2.0)), shape=LAYER)
+    one = single_scattering(Medium(0.2, 0.4), RAY, EnvironmentMap(sun, 2.0), shape=LAYER)
+    assert abs(both.value[1] - one.value) <= both.error[1] + one.error
 
 
 REFUSED = [

@@ -67,6 +67,8 @@ def test_von_mises_fisher_directions(kappa):
             assert abs(v - (1 - mu)) <= 1e-13 * (1 - mu) + 1e-16 * (1 + mu)
             assert abs(c - (1 + mu)) <= 1e-13 * (1 + mu) + 3e-16
     assert np.all(von_mises_fisher.polar(phase, np.array([0.0])).versine == 2 if kappa > 0 else True)
+    flat = von_mises_fisher.polar(VonMisesFisher(5e-324), xi)
+    assert np.allclose(flat.pdf, 0.25 / np.pi, rtol=1e-15)
     for rigorous in (False, True):
         both = [airlight_integral(0.7, 0.5, -3.0, 4.0, phase, rigorous=r) for r in (False, True)]
         assert abs(both[0].value - both[1].value) <= both[0].error + both[1].error
@@ -165,7 +167,7 @@ def test_requests():
 HG16 = 0.85 ** np.arange(17)
 
 REFUSED = [
-    (lambda: VonMisesFisher(np.inf), "kappa must be finite, got inf"),
+    (lambda: VonMisesFisher(np.inf), r"kappa must lie in \[-1e15, 1e15\], got inf; a narrower peak is a delta"),
     (lambda: VonMisesFisher("sharp"), "kappa must be a number"),
     (
         lambda: ApproximateMie(60e-6),

@@ -119,7 +119,7 @@ def test_power_series_by_the_double_sum():
         assert found.error < 1e-10 * found.value
 
 
-@pytest.mark.parametrize("m", [0.9, 1.4, 4.0])
+@pytest.mark.parametrize("m", [0.9, 1.4, 4.0, 30.0])
 def test_next_flight_by_its_differential_equation(m):
     """E[Z^2]' = A' - m A + m (1 - q) E[Z^2], backwards from 1 at the end of the ray."""
     with mp.workdps(30):
@@ -177,7 +177,7 @@ REFUSED = [
     ({"estimate": "ratio"}, "estimate must be one of march, telescoping"),
     ({"estimate": "march", "points": 0}, r"points must be a whole number in \[1, 4096\], got 0"),
     ({"estimate": "telescoping", "ratio": 0.5}, r"ratio must lie in the open interval \(1/4, 1/2\)"),
-    ({"estimate": "power-series", "reach": 0.0}, "reach must be finite and > 0"),
+    ({"estimate": "power-series", "reach": 0.0}, r"reach must lie in \(0, 10000\]"),
     ({"estimate": "weighted", "majorant": 0.0}, "majorant must be finite and > 0"),
     ({"estimate": "decomposition", "majorant": 1.0}, "majorant must not lie below the greatest sigma 2"),
     ({"estimate": "decomposition", "control": 0.6}, r"control must lie in \[0, 0.5\], the least sigma"),
@@ -196,6 +196,13 @@ def test_more_values_than_are_enumerated_are_refused():
         voxel_estimate_mean(np.arange(1.0, 7.0), np.ones(6), "unbiased-march", points=1)
     with pytest.raises(UnsupportedError, match="differ by an optical depth of up to 119, too much to enumerate"):
         voxel_estimate_mean([1.0, 60.0, 120.0], [0.3, 0.3, 0.4], "unbiased-march", points=1)
+    with pytest.raises(UnsupportedError, match=r"looks are off the pivot by 397 \(root mean square\)"):
+        voxel_estimate_variance([1.0, 2.0], [1.0, 1.0], "power-series", pivot=400.0, reach=0.1)
+    for estimate in ("weighted", "next-flight"):
+        with pytest.raises(
+            UnsupportedError, match=r"mean square of the estimate has the size .* take a larger majorant"
+        ):
+            voxel_estimate_variance([1.0, 3.0], [1.0, 1.0], estimate, majorant=1e-3)
 
 
 def test_requests():

@@ -38,6 +38,8 @@ from fogproof.scene.lights.sphere import SphereLight
 from fogproof.scene.media import FROM_PYTHON, KINDS
 from fogproof.scene.media.composite import CompositeMedium
 from fogproof.scene.media.gaussian_puffs import GaussianPuffs
+from fogproof.scene.media.temperature_grid import TemperatureGrid
+from fogproof.scene.media.transformed import TransformedMedium
 from fogproof.scene.shapes import Box
 from fogproof.scene_estimator import estimator_for
 
@@ -73,6 +75,10 @@ MEDIA = {
     "function": Procedural(smooth, 1.0, detail=0.5, **SAME),
     "function in a box": Procedural(smooth, 1.0, lower=(0, 0, 0), upper=(1, 1, 2), detail=0.5, albedo=0.6, phase=BLEND),
     "puffs": GaussianPuffs([(0, 0.1, 1), (0.5, -0.2, 2)], [0.3, 0.7], [2.0, 0.8], **SAME),
+    "fire": TemperatureGrid(VoxelGrid(CELLS, (0, 0, 0), (1, 1, 2), "nearest", albedo=0.6), 4000 + 1000 * CELLS, 2e-6),
+    "turned": TransformedMedium(
+        VoxelGrid(CELLS, (0, 0, 0), (1, 1, 2), "nearest", **SAME), [[0, -1, 0, 0.7], [1, 0, 0, -0.2], [0, 0, 1.2, -0.1]]
+    ),
     "several": CompositeMedium(
         (Medium(0.3, 0.6, HenyeyGreenstein(0.4), emission=0.7), Medium(0.1, 0.2)),
         (Box((-1, -1, 0.5), (1, 1, 1.5)), Box((-2, -2, 0), (2, 2, 2))),

@@ -42,13 +42,13 @@ def test_every_naive_form_is_seen_to_fail(measured):
 
 
 def test_bounds_are_within_reach(measured):
-    """A bound far above what ever happens would let a lost digit pass: none is above 20 ulps."""
-    assert all(formula.bound <= 20 for formula in formulas() if formula.bound is not None)
+    """A bound far above what ever happens would let a lost digit pass."""
+    assert all(formula.bound <= 14 for formula in formulas() if formula.bound is not None)
     worst = {}
     for row in measured:
         if row.form == "ours" and row.bound is not None:
             worst[row.formula] = max(worst.get(row.formula, 0.0), row.worst / row.bound)
-    assert sorted(worst.values())[len(worst) // 2] > 0.05
+    assert sorted(worst.values())[len(worst) // 2] > 0.2
 
 
 OURS = ("fogproof.analytic", "fogproof.estimators", "numpy", "scipy", "math")

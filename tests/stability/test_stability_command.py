@@ -11,6 +11,7 @@ from fogproof.cli.commands import cli
 from fogproof.errors import InvalidInputError
 from fogproof.reports import write_stability
 from fogproof.reports.records.stability import parse_stability, stability_beside
+from fogproof.stability import measuring
 
 
 @pytest.fixture(scope="module")
@@ -76,3 +77,18 @@ def test_a_page_of_somebody_else_is_not_replaced(tmp_path):
     told = CliRunner().invoke(cli, ["stability", "free_path/distance", "-o", str(tmp_path)], standalone_mode=False)
     assert isinstance(told.exception, InvalidInputError)
     assert (tmp_path / "stability.html").read_text() == "mine"
+
+
+def test_what_was_reached_is_kept_when_it_is_stopped(tmp_path, monkeypatch):
+    found = measuring.measure
+
+    def measure(formula, points):
+        if formula.name != "free_path/density":
+            raise KeyboardInterrupt
+        return found(formula, 3)
+
+    monkeypatch.setattr(measuring, "measure", measure)
+    told = CliRunner().invoke(cli, ["stability", "free_path", "-o", str(tmp_path)], standalone_mode=False)
+    assert told.return_value == 130, told.output
+    assert "stopped after 1 of" in told.stderr
+    assert {row.formula for row in stability_beside(tmp_path).measured} == {"free_path/density"}

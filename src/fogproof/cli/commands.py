@@ -9,6 +9,7 @@ import io
 import os
 import sys
 import traceback
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ import click
 from fogproof.cli.signals import code_of
 from fogproof.cli.terminal import say
 from fogproof.errors import FogproofError
+from fogproof.text import one_line
 
 _COMMANDS = {
     "verify": "Check every sampler and estimator against its reference.",
@@ -70,6 +72,7 @@ def cli() -> None:
 def main(arguments: list[str] | None = None) -> Any:
     """Run the command line. Every end is a sentence and a code; 1 means that something was rejected, and nothing else."""
     code = _FAULT
+    warnings.showwarning = _warn
     try:
         code = cli.main(arguments, standalone_mode=False)
         if sys.stdout is not None:
@@ -108,6 +111,11 @@ def _say(message: object, code: int, who: str = "fogproof: ") -> int:
     with contextlib.suppress(OSError):
         say(f"{who}{message}", err=True)
     return code
+
+
+def _warn(message: object, category: type[Warning], filename: str, lineno: int, *_: object) -> None:
+    """Tell a warning that somebody's file raises as a sentence: whatever it holds cannot move the cursor."""
+    _say(f"{Path(filename).name}, line {lineno}: {category.__name__}: {one_line(str(message))}", 0)
 
 
 def _nobody_reads() -> int:

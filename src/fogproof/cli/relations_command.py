@@ -105,7 +105,7 @@ def _line(row: dict[str, Any]) -> str:
     against = ", ".join(filter(None, (row["first"], row["second"])))
     told += f"  {'oracle: ' + against if against else ''}"
     if row["outcome"] == "rejected":
-        told += f"\n    {row['message'] or row['reason']}; {row['reason']}; look at {row['isolates']}"
+        told += f"\n    {'; '.join(filter(None, (row['message'], row['reason'])))}; look at {row['isolates']}"
     elif row["outcome"] in ("error", "not rendered"):
         told += f"  {row['reason']}"
     return told.rstrip()

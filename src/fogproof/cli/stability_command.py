@@ -11,6 +11,7 @@ from pathlib import Path
 
 import click
 
+from fogproof.cli.signals import code_of, stoppable
 from fogproof.cli.terminal import say
 
 
@@ -55,12 +56,19 @@ def command(names: tuple[str, ...], folder: Path | None, brief: bool, force: boo
     width = max(len(formula.name) for formula in chosen)
     if not as_json:
         say(f"{'formula':{width}}  {'form':28}  {'type':7}  {'region':26}  {'worst':>8}  {'bound':>6}  outcome")
-    for formula in chosen:
-        rows = measure(formula, points)
-        measured += rows
-        if not as_json:
-            for row in rows:
-                say(_row(width, row))
+    stopped = 0
+    try:
+        with stoppable():
+            for formula in chosen:
+                rows = measure(formula, points)
+                measured += rows
+                if not as_json:
+                    for row in rows:
+                        say(_row(width, row))
+    except KeyboardInterrupt as stop:
+        stopped = code_of(stop)
+        reached = len({row.formula for row in measured})
+        say(f"stopped after {reached} of {len(chosen)} formulas; these are kept", err=True)
     seconds = time.perf_counter() - clock
     told = run_record(
         measured,
@@ -85,8 +93,9 @@ def command(names: tuple[str, ...], folder: Path | None, brief: bool, force: boo
     for name, form in hidden(measured):
         say(f"{name}: the naive form {form!r} fails in none of the regions", err=True)
     compared = sum(row.points for row in measured)
-    say(f"{len(chosen)} formulas, {compared} comparisons, {len(broken)} bounds broken, {seconds:.1f} s", err=True)
-    return exit_code(measured)
+    done = f"{len({row.formula for row in measured})} of {len(chosen)} formulas"
+    say(f"{done}, {compared} comparisons, {len(broken)} bounds broken, {seconds:.1f} s", err=True)
+    return stopped or exit_code(measured)
 
 
 def _row(width: int, row: object) -> str:

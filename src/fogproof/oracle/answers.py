@@ -98,12 +98,29 @@ def read_arguments(request: Any, rigorous: bool = False) -> tuple[Quantity, dict
             proven = [name for name, quantity in quantities().items() if "rigorous" in quantity.arguments]
             raise UnsupportedError(f"{name} has no proven enclosure; {', '.join(proven)} have", "quantity")
         arguments["rigorous"] = True
-    return known, read_fields(known.arguments, arguments, "request")
+    read = read_fields(known.arguments, arguments, "request")
+    return known, {**read, "of": _asked(read["of"])} if known.of else read
+
+
+def _asked(request: Any) -> tuple[Quantity, dict[str, Any]]:
+    """Return what the request inside a request asks for."""
+    known = quantities().get(str(request.get("quantity")))
+    if known is not None and known.of:
+        raise UnsupportedError(f"{known.name} asks about a quantity and is none that can be asked about", "of.quantity")
+    try:
+        inner, arguments = read_arguments(request)
+    except FogproofError as error:
+        error.path = f"of.{error.path}".rstrip(".")
+        raise
+    return inner, arguments
 
 
 def evaluate(quantity: Quantity, arguments: dict[str, Any], limits: Limits) -> tuple[np.ndarray, np.ndarray, Reference]:
     """Return value and error of one shape, without negative zeros, and the reference they come from."""
     require_size(quantity, arguments, limits.values)
+    if quantity.of:
+        asked, given = arguments["of"]
+        require_size(asked, given, limits.values)
     with within(limits.seconds), np.errstate(all="ignore"):
         reference = quantity.function(**arguments)
     value, error = np.broadcast_arrays(np.asarray(reference.value), np.asarray(reference.error))

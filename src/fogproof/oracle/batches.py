@@ -77,7 +77,7 @@ def _stack(request: Any) -> _Stack | None:
     """Return what a request has in common with those it can be answered with; None if it must be answered alone."""
     name = request.get("quantity") if isinstance(request, dict) else None
     known = quantities().get(name) if isinstance(name, str) else None
-    if known is None:
+    if known is None or known.of:
         return None
     rest = {key: value for key, value in request.items() if key != "id"}
     shapes: dict[str, tuple[int, ...]] = {}

@@ -22,7 +22,7 @@ class Numbers:
     """Tells pydantic how to validate and describe an array of numbers; called only when a file or request is read.
 
     axes   how many axes at the end belong to one value: 0 for numbers, 1 for points (..., 3); all before them broadcast
-    table  True for an axis of a table: one-dimensional, and never broadcast against others
+    table  True for an axis of a table, or a matrix: never broadcast against others
     """
 
     axes: int = 0
@@ -35,7 +35,8 @@ class Numbers:
 
     def __get_pydantic_json_schema__(self, _schema: Any, _handler: Any) -> dict[str, Any]:
         if self.table or self.axes:
-            described = "a list of numbers" if self.table else "[x, y, z], or nested lists of such points"
+            whole = "a matrix, row by row" if self.axes == 2 else "a list of numbers"
+            described = whole if self.table else "[x, y, z], or nested lists of such points"
             return {"type": "array", "description": described}
         return {
             "anyOf": [{"type": "number"}, {"type": "array"}, {"enum": ["inf", "-inf"]}],
@@ -65,6 +66,9 @@ PointArray = Annotated[Any, Numbers(axes=1)]
 
 AxisArray = Annotated[Any, Numbers(table=True)]
 """Numbers (n,) along one axis of a table."""
+
+MatrixArray = Annotated[Any, Numbers(axes=2, table=True)]
+"""A matrix (m, n)."""
 
 ChannelArray = Annotated[Any, _GreyOrChannels()]
 """A number, or one number a channel."""

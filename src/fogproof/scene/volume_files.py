@@ -1,4 +1,4 @@
-"""Voxel grids from files: NumPy's `.npy`, and Mitsuba's binary `.vol`, version 3.
+"""Voxel grids from files: NumPy's `.npy`, Mitsuba's binary `.vol`, version 3, NanoVDB's `.nvdb` and OpenVDB's `.vdb`.
 
 `.npy` holds an array (nx, ny, nz) or (nx, ny, nz, channels), in the order x, y, z; its box has to be given. `.vol` holds its
 box, and its values in the order z, y, x, channel:
@@ -11,23 +11,15 @@ box, and its values in the order z, y, x, channel:
     24-47  float32  xmin, ymin, zmin, xmax, ymax, zmax
     48-    values, little-endian
 
-OpenVDB stores sparse trees, which a dense grid has no use for: write the active bounding box as `.npy`, with OpenVDB's own Python
-module, and give the box in world coordinates,
-
-    import numpy as np, openvdb           # "import pyopenvdb as openvdb" before version 11
-    grid = openvdb.read("smoke.vdb", "density")
-    low, high = grid.evalActiveVoxelBoundingBox()
-    dense = np.zeros([b - a + 1 for a, b in zip(low, high)], dtype=np.float32)
-    grid.copyToArray(dense, ijk=low)
-    np.save("smoke.npy", dense)
-    half = 0.5                            # values stand at the centres of voxels
-    print(grid.transform.indexToWorld([a - half for a in low]), grid.transform.indexToWorld([b + half for b in high]))
-
-which is right for transforms without rotation or shear.
+A `.nvdb` file is read directly (see `nanovdb_files`), a `.vdb` file by OpenVDB's own Python module where `openvdb` or
+`pyopenvdb` can be imported. Both hold sparse trees, of which the bounding box is written out densely, and a map from indices to
+the world: values stand at whole indices, in the middle of voxels. Where the map turns or shears, the grid comes as a
+`TransformedMedium`.
 """
 
 from __future__ import annotations
 
+import importlib
 import math
 import os
 import struct
@@ -40,7 +32,9 @@ from numpy.lib import format as npy
 
 from fogproof.errors import InvalidInputError, InvalidValueError, UnsupportedError, shorten
 from fogproof.input_files import open_regular, size_of
+from fogproof.scene.media.transformed import TransformedMedium
 from fogproof.scene.media.voxel_grid import VoxelGrid
+from fogproof.scene.nanovdb_files import DenseGrid, read_nanovdb
 from fogproof.validate import number
 
 VALUES = 2**27
@@ -54,25 +48,41 @@ _ENCODINGS: dict[int, tuple[np.dtype[Any], float]] = {1: (np.dtype("<f4"), 1.0),
 
 
 def read_voxel_grid(
-    path: str | Path, *, scale: float = 1.0, lower: Any = None, upper: Any = None, **more: Any
-) -> VoxelGrid:
-    """Read the extinction of a voxel grid from a `.npy` or `.vol` file.
+    path: str | Path,
+    *,
+    scale: float = 1.0,
+    lower: Any = None,
+    upper: Any = None,
+    name: str | None = None,
+    **more: Any,
+) -> VoxelGrid | TransformedMedium:
+    """Read the extinction of a voxel grid from a `.npy`, `.vol`, `.nvdb` or `.vdb` file.
 
     scale         factor from the file's values to sigma_t [1/m]
-    lower, upper  (3,) corners of the box [m]; they override those of a `.vol` file
+    lower, upper  (3,) corners of the box [m]; they override those of the file
+    name          of a grid in a `.nvdb` or `.vdb` file, for example "density"; the first unless given
     more          further fields of `VoxelGrid`: interpolation, albedo, phase, emission
 
     Whatever is wrong with the file is a `FogproofError` that names it.
     """
     path = Path(path)
     readers = {".npy": _read_npy, ".vol": _read_vol}
-    if path.suffix.lower() not in readers:
-        raise UnsupportedError(
-            f"{path}: grids are read from .npy and .vol files, got {path.suffix or 'no suffix'!r}", "path"
-        )
+    sparse = {".nvdb": read_nanovdb, ".vdb": _read_openvdb}
+    suffix = path.suffix.lower()
+    if suffix not in {**readers, **sparse}:
+        known = "grids are read from .npy, .vol, .nvdb and .vdb files"
+        raise UnsupportedError(f"{path}: {known}, got {path.suffix or 'no suffix'!r}", "path")
     number("scale", scale, "must be finite and >= 0", 0)
-    values, box = readers[path.suffix.lower()](path)
-    corners = [given if given is not None else stored for given, stored in zip((lower, upper), box, strict=True)]
+    values: np.ndarray
+    stored: tuple[Any, Any]
+    if suffix in sparse:
+        found = sparse[suffix](path, name)
+        if lower is None and upper is None:
+            return _placed(found, scale, path, more)
+        values, stored = found.values, (None, None)
+    else:
+        values, stored = readers[suffix](path)
+    corners = [given if given is not None else stored for given, stored in zip((lower, upper), stored, strict=True)]
     for name, corner in zip(("lower", "upper"), corners, strict=True):
         if corner is None:
             raise InvalidValueError(name, "must be given: a .npy file has no box", None, f"{name}=(x, y, z) in metres")
@@ -82,6 +92,53 @@ def read_voxel_grid(
         return VoxelGrid(values, corners[0], corners[1], **more)
     except InvalidValueError as error:
         raise error.inside("the grid", str(path)) from None
+
+
+def _placed(grid: DenseGrid, scale: float, path: Path, more: dict[str, Any]) -> VoxelGrid | TransformedMedium:
+    """Return a sparse file's grid where its map puts it."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        values = grid.values * scale
+    low = grid.first - 0.5
+    try:
+        diagonal = np.diag(grid.matrix)
+        if np.array_equal(grid.matrix, np.diag(diagonal)) and np.all(diagonal > 0):
+            corners = (diagonal * low + grid.offset, diagonal * (low + values.shape) + grid.offset)
+            return VoxelGrid(values, *corners, **more)
+        matrix = np.concatenate([grid.matrix, grid.offset[:, None]], axis=1)
+        return TransformedMedium(VoxelGrid(values, low, low + values.shape, **more), matrix)
+    except InvalidValueError as error:
+        raise error.inside("the grid", str(path)) from None
+
+
+def _read_openvdb(path: Path, name: str | None) -> DenseGrid:
+    """Return a grid of an OpenVDB file by OpenVDB's own module."""
+    vdb = next((found for module in ("openvdb", "pyopenvdb") if (found := _imported(module))), None)
+    if vdb is None:
+        fix = "install OpenVDB's Python module, or convert the file to .nvdb"
+        raise UnsupportedError(f"{path}: .vdb files are read where 'openvdb' can be imported; {fix}", "path")
+    with open_regular(path, "the grid"):
+        pass  # whatever is wrong with the path is said in our words
+    try:
+        names = [grid.name for grid in vdb.readAllGridMetadata(str(path))]
+        grid = vdb.read(str(path), name if name is not None else names[0])
+    except Exception as error:  # a module from outside raises what it likes
+        raise InvalidInputError(f"cannot read the grid {path}: {shorten(str(error))}", str(path)) from None
+    low, high = (np.array(corner) for corner in grid.evalActiveVoxelBoundingBox())
+    shape = high - low + 1
+    if np.any(shape < 1) or np.prod(shape.astype(float)) > VALUES:
+        raise UnsupportedError(f"{path} holds {shape.tolist()} values; 1 to {VALUES} are read", str(path))
+    dense = np.zeros(tuple(shape), np.float32)
+    grid.copyToArray(dense, ijk=tuple(low.tolist()))
+    zero = np.array(grid.transform.indexToWorld((0, 0, 0)))
+    matrix = np.stack([np.array(grid.transform.indexToWorld(tuple(axis))) - zero for axis in np.eye(3)], axis=1)
+    return DenseGrid(dense.astype(float), low, matrix, zero)
+
+
+def _imported(module: str) -> Any:
+    try:
+        return importlib.import_module(module)
+    except ImportError:
+        return None
 
 
 def _read_npy(path: Path) -> tuple[np.ndarray, tuple[None, None]]:

@@ -12,7 +12,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from fogproof.errors import InvalidInputError, InvalidValueError
+from fogproof.errors import InvalidInputError, InvalidValueError, UnsupportedError
 from fogproof.estimators import FractalNoise
 from fogproof.input_files import open_regular
 from fogproof.scene import AnyMedium, Isotropic, Procedural, VoxelGrid
@@ -92,8 +92,12 @@ class GridFile:
         """Return the grid, or say that the file is not what it was."""
         if self.sha256 and sha256_of(Path(self.path)) != self.sha256:
             raise InvalidInputError(f"the grid {self.path} has changed since the study was started", self.path)
-        more = {"interpolation": self.interpolation, "albedo": self.albedo, "phase": self.phase}
-        return read_voxel_grid(self.path, scale=self.scale, lower=self.lower, upper=self.upper, **more)
+        more: dict[str, Any] = {"interpolation": self.interpolation, "albedo": self.albedo, "phase": self.phase}
+        found: Any = read_voxel_grid(self.path, scale=self.scale, lower=self.lower, upper=self.upper, **more)
+        if hasattr(found, "to_world"):
+            raise UnsupportedError(f"{self.path} is turned in the world; a study takes grids along the axes", "path")
+        grid: VoxelGrid = found
+        return grid
 
 
 def sha256_of(path: Path) -> str:

@@ -89,17 +89,16 @@ def _choice(sight: Sight, fits: list[CauseFit], noise: np.ndarray, nothing: floa
     clean = best.left <= count + SURE * np.sqrt(2 * count)
     if gain < GAIN or (explained < BELIEVED and not clean):
         return None
+    cause, sentence = best.told
     others = [
-        one.hypothesis.cause
+        one.told[0]
         for one, cost in zip(fits, price, strict=True)
-        if one is not best
-        and _as_good(one, cost, least, nothing, unit < 0.5)
-        and one.hypothesis.cause != best.hypothesis.cause
+        if one is not best and _as_good(one, cost, least, nothing, unit < 0.5) and one.told[0] != cause
     ]
-    words = f"{best.hypothesis.words(best.parameters)}; that explains {min(explained, 1.0):.2%} of the misfit"
+    words = f"{sentence}; that explains {min(explained, 1.0):.2%} of the misfit"
     if others:
         words += f"; so would {', '.join(dict.fromkeys(others))}"
-    return Choice(best.hypothesis.cause, words, explained, clean)
+    return Choice(cause, words, explained, clean)
 
 
 def _as_good(one: CauseFit, cost: float, least: float, nothing: float, exact: bool) -> bool:

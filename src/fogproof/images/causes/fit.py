@@ -15,6 +15,9 @@ WINDOW = 9
 STARTS, STEPS = 3, 15
 """How many of the best starts are followed, and how far."""
 
+NEAR = 0.01
+"""Of a fitted parameter: closer than this it is the value that has a name of its own."""
+
 MIDDLES = 0.02
 """Share of the difference of a pixel's mean and its middle by which predictions from middles are taken to be off."""
 
@@ -27,6 +30,14 @@ class CauseFit:
     parameters: np.ndarray
     errors: np.ndarray
     left: float
+
+    @property
+    def told(self) -> tuple[str, str]:
+        """The cause and a sentence with the fit; a value with a name of its own is called by it."""
+        for value, cause, words in self.hypothesis.special:
+            if abs(float(self.parameters[0]) - value) <= max(NEAR, 3 * float(self.errors[0])):
+                return cause, words
+        return self.hypothesis.cause, self.hypothesis.words(self.parameters)
 
 
 def noise_of(sight: Sight) -> np.ndarray:
@@ -68,6 +79,9 @@ def _third_differences(sight: Sight) -> np.ndarray:
 def fit(sight: Sight, hypothesis: ImageCause, noise: np.ndarray) -> CauseFit | None:
     """Return the best fit, or None where the hypothesis cannot be evaluated."""
     from scipy.optimize import least_squares
+
+    if hypothesis.blur is not None:
+        noise = np.hypot(noise, hypothesis.blur)
 
     def off(parameters: np.ndarray) -> np.ndarray:
         gap = (sight.image - hypothesis.predict(parameters)) / noise

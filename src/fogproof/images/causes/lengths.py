@@ -20,9 +20,13 @@ from fogproof.scene.shapes import EVERYWHERE
 
 NODES = 96
 
+FLAT = 1e-3
+"""Range of cosines to the axis below which depth and distance are the same."""
+
 
 def hypotheses(sight: Sight) -> Iterator[ImageCause]:
     """Yield single scattering with wrong lengths in its exponentials, and background with depth for distance."""
+    yield from _depth(sight)
     scene = sight.scene
     position = getattr(scene.light, "position", None)
     uniform = hasattr(scene.medium, "mean_free_path")
@@ -53,6 +57,34 @@ def hypotheses(sight: Sight) -> Iterator[ImageCause]:
             return np.asarray((direct + airlight * (wrong / right)) * to_means)
 
         yield fixed(cause, predict, words)
+
+
+def _depth(sight: Sight) -> Iterator[ImageCause]:
+    """Yield the depth along the axis for the distance along the ray: of what comes straight, and of where the wall is."""
+    scene = sight.scene
+    medium: Any = scene.medium
+    x0, y0, _, _ = scene.camera.film.window
+    ray: Ray = given(scene.camera, "fogproof.analytic.cameras", "rays")(
+        scene.camera, sight.columns + (x0 + 0.5), sight.rows + (y0 + 0.5)
+    )
+    ahead = np.subtract(scene.camera.target, scene.camera.origin)
+    cosine = (np.broadcast_to(ray.direction, (len(sight.rows), 3)) @ (ahead / np.linalg.norm(ahead)))[:, None]
+    if np.ptp(cosine) < FLAT:
+        return
+    words = "the depth along the camera's axis stands for the distance along the ray"
+    if scene.scattering in ("none", "ambient") and hasattr(medium, "mean_free_path") and np.all(medium.sigma_t > 0):
+        ambient = np.asarray(scene.ambient) if scene.scattering == "ambient" else 0.0
+        source = np.asarray(medium.albedo) * ambient + (1 - np.asarray(medium.albedo)) * np.asarray(medium.emission)
+        contrast = np.asarray(scene.background) - source
+
+        def flat() -> np.ndarray:
+            through = np.clip((sight.reference - source) / np.where(contrast == 0, 1.0, contrast), 0.0, 1.0)
+            return np.asarray(source + contrast * through**cosine)
+
+        if np.all(contrast != 0):
+            yield fixed("depth-for-distance", flat, words)
+    elif np.isfinite(scene.camera.wall):
+        yield fixed("depth-for-distance", lambda: sight.instead(scene, wall_at_distance=True), words)
 
 
 def _airlight(sight: Sight, ray: Ray, light: np.ndarray, near: float, far: float, power: float) -> np.ndarray:

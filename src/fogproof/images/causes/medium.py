@@ -81,7 +81,19 @@ def _phases(sight: Sight) -> Iterator[ImageCause]:
         own = f"{g:g}" if g else type(phase).__name__
         return f"{'g' if g else 'Henyey-Greenstein with g'} = {p[0]:.4g} stands for {own}"
 
-    yield ImageCause("wrong-g", lambda p: seen_by(HenyeyGreenstein(float(p[0]))), fitted, (*SCAN, (g,)), -0.99, 0.99)
+    special = (
+        (0.0, "isotropic", f"scattering is isotropic, g = {g:g} has no effect"),
+        (-g, "wrong-sign-of-g", f"g has the wrong sign: {-g:g} for {g:g}"),
+    )
+    yield ImageCause(
+        "wrong-g",
+        lambda p: seen_by(HenyeyGreenstein(float(p[0]))),
+        fitted,
+        (*SCAN, (g,)),
+        -0.99,
+        0.99,
+        special=special if g else (),
+    )
     yield ImageCause(
         "schlick-for-henyey-greenstein",
         lambda p: seen_by(Schlick(float(p[0]))),

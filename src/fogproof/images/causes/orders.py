@@ -1,4 +1,4 @@
-"""One order of scattering too many: what a second collision would add, by a small Monte Carlo of its own.
+"""One order of scattering too many or too few: what a second collision adds, by a small Monte Carlo of its own.
 
     L_2 = int T sigma_s int f_p(w . d) L_1(x_t, w) dw dt
 
@@ -9,6 +9,7 @@ film is fitted to it, which takes most of the noise away.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -16,36 +17,65 @@ import numpy as np
 from fogproof.analytic import phase_pdf, single_scattering
 from fogproof.analytic.geometry.convex_shapes import chord
 from fogproof.analytic.geometry.flat_rays import FlatRays
+from fogproof.errors import UnsupportedError
 from fogproof.images.causes.image_cause import ImageCause, Sight, fixed
 from fogproof.scene import Ray
 from fogproof.scene.kinds import given
 
-PATHS = 1 << 15
+PATHS = 1 << 16
 DEGREE = 4
+
+COARSE = 0.2
+"""Share of the second order by which its own Monte Carlo may be off on average, to be held against an image."""
 
 
 def hypotheses(sight: Sight) -> Iterator[ImageCause]:
-    """Yield the image with a second order of scattering, as much of it as fits."""
-    medium: Any = sight.scene.medium
-    uniform = hasattr(medium, "mean_free_path")
-    if sight.scene.scattering != "single" or not uniform or not np.any(medium.sigma_s):
+    """Yield the image with one order of scattering too many, or with the first or the first two alone."""
+    scene = sight.scene
+    medium: Any = scene.medium
+    if scene.scattering not in ("single", "multiple") or not np.any(medium.albedo):
         return
-    ratio = _second_order(sight)
-    if ratio is None:
+    if scene.scattering == "multiple":
+        once = replace(scene, scattering="single")
+        words = "one-order-too-few", "only light that scattered once is there, higher orders are missing"
+        yield fixed(words[0], lambda: sight.instead(once), words[1])
+    else:
+        whole = replace(scene, scattering="multiple")
+        yield fixed(
+            "all-orders", lambda: sight.instead(whole), "all orders of scattering are there, not the first alone"
+        )
+    if not hasattr(medium, "mean_free_path"):
+        return
+    try:
+        found = _second_order(sight)
+    except UnsupportedError:
+        return
+    if found is None:
+        return
+    ratio, blur = found
+    blur = np.abs(sight.reference) * blur
+    if scene.scattering == "multiple":
+        told = "only light that scattered once or twice is there, higher orders are missing"
+        yield fixed(
+            "one-order-too-few", lambda: sight.instead(once) + np.asarray(sight.reference * ratio), told, blur=blur
+        )
         return
 
     def more(share: float) -> np.ndarray:
         return np.asarray(sight.reference * (1 + share * ratio))
 
-    def words(p: np.ndarray) -> str:
+    def words_of(p: np.ndarray) -> str:
         return f"{p[0]:.2g} times the light that scatters twice is there"
 
-    yield fixed("one-order-too-many", lambda: more(1.0), "light that scattered twice is there")
-    yield ImageCause("one-order-too-many", lambda p: more(float(p[0])), words, ((1.0,),), 0.0, 20.0)
+    times = float(np.mean(more(1.0)) / np.mean(sight.reference))
+    told = f"one scattering order too many, ratio {times:.3g}: light that scattered twice is there"
+    yield fixed("one-order-too-many", lambda: more(1.0), told, blur=blur)
+    start = ((1.0,),)
+    yield ImageCause("one-order-too-many", lambda p: more(float(p[0])), words_of, start, 0.0, 20.0, blur=blur)
 
 
-def _second_order(sight: Sight) -> np.ndarray | None:
-    """Return L_2 / reference at the chosen pixels (k, channels), smoothed; None where nothing scatters twice."""
+def _second_order(sight: Sight) -> tuple[np.ndarray, np.ndarray] | None:
+    """Return L_2 / reference at the chosen pixels (k, channels), smoothed, and its error; None where that is not known."""
     scene, rng = sight.scene, np.random.default_rng(1)
     medium: Any = scene.medium
     light: Any = scene.light
@@ -81,13 +111,17 @@ def _second_order(sight: Sight) -> np.ndarray | None:
     mean /= len(which) / len(sight.rows)
     if not mean.any():
         return None
-    return _smooth(sight, mean / np.maximum(sight.reference, 1e-6 * float(np.max(sight.reference))))
+    ratio, error = _smooth(sight, mean / np.maximum(sight.reference, 1e-6 * float(np.max(sight.reference))))
+    return (ratio, error) if float(np.mean(error)) <= COARSE * float(np.mean(ratio)) else None
 
 
-def _smooth(sight: Sight, ratio: np.ndarray) -> np.ndarray:
-    """Return a polynomial over the film fitted to values at the chosen pixels."""
+def _smooth(sight: Sight, ratio: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return a polynomial over the film fitted to values at the chosen pixels, and its standard error there."""
     rows, columns = sight.found.reference.shape[:2]
     u, v = 2 * sight.columns / columns - 1, 2 * sight.rows / rows - 1
     terms = [u**i * v**j for i in range(DEGREE + 1) for j in range(DEGREE + 1 - i)]
     basis = np.stack(terms, axis=1)
-    return np.asarray(np.maximum(basis @ np.linalg.lstsq(basis, ratio, rcond=None)[0], 0.0))
+    fitted = basis @ np.linalg.lstsq(basis, ratio, rcond=None)[0]
+    spread = np.sum((ratio - fitted) ** 2, axis=0) / max(len(ratio) - basis.shape[1], 1)
+    lever = np.sum(basis @ np.linalg.pinv(basis.T @ basis) * basis, axis=1)
+    return np.maximum(fitted, 0.0), np.sqrt(np.maximum(lever, 0.0)[:, None] * spread)

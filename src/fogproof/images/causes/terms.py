@@ -23,7 +23,11 @@ def hypotheses(sight: Sight) -> Iterator[ImageCause]:
         without.append(("no-emission", replace(scene, medium=replace(medium, emission=0.0)), "emission is missing"))
     if scene.scattering != "none":
         without.append(
-            ("no-scattering", replace(scene, scattering="none"), "nothing scattered is there, only what comes straight")
+            (
+                "no-scattering",
+                replace(scene, scattering="none"),
+                "no order of scattering is there, only what comes straight",
+            )
         )
     if scene.occluders:
         without.append(("no-shadow", replace(scene, occluders=()), "occluders cast no shadow"))

@@ -26,6 +26,8 @@ from fogproof.scene.media.linear import LinearMedium
 from fogproof.scene.media.opengl_fog import OpenGLFog
 from fogproof.scene.media.piecewise_constant import PiecewiseConstantMedium
 from fogproof.scene.media.procedural import Procedural
+from fogproof.scene.media.temperature_grid import TemperatureGrid
+from fogproof.scene.media.transformed import TransformedMedium
 from fogproof.scene.media.voxel_grid import VoxelGrid
 
 __all__ = [
@@ -39,6 +41,8 @@ __all__ = [
     "OpenGLFog",
     "PiecewiseConstantMedium",
     "Procedural",
+    "TemperatureGrid",
+    "TransformedMedium",
     "VoxelGrid",
 ]
 
@@ -52,6 +56,8 @@ KINDS: dict[str, type] = {
     "voxel-grid": VoxelGrid,
     "gaussian-puffs": GaussianPuffs,
     "composite": CompositeMedium,
+    "temperature-grid": TemperatureGrid,
+    "transformed": TransformedMedium,
 }
 """The `kind` of each medium in files and requests; without one a medium is homogeneous."""
 

@@ -15,6 +15,7 @@ from fogproof.scene.phase.hazy import Hazy
 from fogproof.scene.phase.henyey_greenstein import HenyeyGreenstein
 from fogproof.scene.phase.isotropic import Isotropic
 from fogproof.scene.phase.legendre_series import LegendreSeries
+from fogproof.scene.phase.microflakes import Microflakes
 from fogproof.scene.phase.mie import Mie
 from fogproof.scene.phase.mixture import Mixture
 from fogproof.scene.phase.murky import Murky
@@ -76,6 +77,7 @@ __all__ = [
     "HenyeyGreenstein",
     "Isotropic",
     "LegendreSeries",
+    "Microflakes",
     "Mie",
     "Mixture",
     "Murky",

@@ -7,12 +7,14 @@ from dataclasses import dataclass
 from fogproof.scene.phase.phase_function import PhaseFunction
 from fogproof.validate import number
 
+SHARPEST = 1e15
+
 
 @dataclass(frozen=True)
 class VonMisesFisher(PhaseFunction):
     """f(mu) = kappa exp(kappa mu)/(4 pi sinh kappa): the normal distribution of the sphere (Fisher 1953).
 
-    kappa  concentration, any finite number: > 0 scatters forward, < 0 backward, 0 is isotropic
+    kappa  concentration in [-1e15, 1e15]: > 0 scatters forward, < 0 backward, 0 is isotropic
 
     The mean cosine is coth kappa - 1/kappa; a narrow peak has the standard deviation kappa^(-1/2) [rad] on either axis.
     """
@@ -20,4 +22,5 @@ class VonMisesFisher(PhaseFunction):
     kappa: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "kappa", number("kappa", self.kappa, "must be finite"))
+        rule, fix = "must lie in [-1e15, 1e15]", "a narrower peak is a delta, which has no density"
+        object.__setattr__(self, "kappa", number("kappa", self.kappa, rule, -SHARPEST, SHARPEST, fix=fix))

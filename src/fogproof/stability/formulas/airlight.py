@@ -149,7 +149,7 @@ FORMULAS = [
         placed,
         true_place,
         segments({"xi": uniforms}),
-        bound=6.0,
+        bound=3.0,
         naive=(Naive("h tan(lerp of two angles)", KULLA, naive_place),),
         precisions=BOTH,
     ),
@@ -160,7 +160,7 @@ FORMULAS = [
         drawn_density,
         lambda xi, h, a, b: true_density(true_place(xi, h, a, b), h, a, b),
         segments({"xi": uniforms}),
-        bound=8.0,
+        bound=5.0,
         precisions=BOTH,
     ),
     Formula(
@@ -173,7 +173,7 @@ FORMULAS = [
             HardRegion("light beside", {"t": decades(1e-9, 1.5), "h": HEIGHTS}, {"a": -0.75, "b": 1.5}),
             HardRegion("light far behind", {"a": decades(1.0, 1e12), "h": decades(1e-6, 1e6)}, {"t": 3e12, "b": 4e12}),
         ),
-        bound=6.0,
+        bound=3.0,
         naive=(Naive("difference of two arctangents", KULLA, naive_density),),
     ),
     Formula(

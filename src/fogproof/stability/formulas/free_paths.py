@@ -107,7 +107,7 @@ FORMULAS = [
         of="estimators.FreePath",
         ours=distance,
         truth=lambda xi, sigma_t: -(-xi).log1p() / sigma_t,
-        bound=2.0,
+        bound=1.5,
         regions=(
             HardRegion("uniforms off the grid", {"xi": fine_uniforms, "sigma_t": decades(1e-300, 1e300)}),
             HardRegion("a generator's uniforms", {"xi": uniforms}, {"sigma_t": 1.0}),
@@ -121,7 +121,7 @@ FORMULAS = [
         of="estimators.FreePath",
         ours=density_drawn,
         truth=lambda xi, sigma_t: (1 - xi) * sigma_t,
-        bound=2.0,
+        bound=1.5,
         regions=(HardRegion("uniforms off the grid", {"xi": fine_uniforms, "sigma_t": decades(1e-300, 1e300)}),),
         precisions=BOTH,
     ),
@@ -140,7 +140,7 @@ FORMULAS = [
         of="estimators.TruncatedFreePath",
         ours=truncated,
         truth=lambda xi, tau: -(xi * (-tau).expm1()).log1p() / tau,
-        bound=4.0,
+        bound=3.0,
         regions=(HardRegion("thin to opaque", {"xi": uniforms, "tau": decades(0, 1e3)}),),
         naive=(
             Naive(
@@ -173,7 +173,7 @@ FORMULAS = [
         of="estimators.Linear",
         ours=linear_reach,
         truth=true_linear_reach,
-        bound=4.0,
+        bound=3.0,
         regions=(
             HardRegion("slopes", {"slope": SLOPES, "depth": decades(1e-300, 700)}, {"sigma_0": 0.75}),
             HardRegion("from vacuum", {"slope": decades(1e-300, 1e6), "depth": decades(1e-300, 700)}, {"sigma_0": 0.0}),
@@ -186,7 +186,7 @@ FORMULAS = [
         of="estimators.Linear",
         ours=linear_depth,
         truth=true_linear_depth,
-        bound=3.0,
+        bound=2.0,
         regions=(HardRegion("slopes", {"slope": SLOPES, "t": decades(1e-150, 1e150)}, {"sigma_0": 0.75}),),
         naive=(
             Naive(
@@ -202,7 +202,7 @@ FORMULAS = [
         of="estimators.Exponential",
         ours=exponential_reach,
         truth=true_exponential_reach,
-        bound=4.0,
+        bound=3.0,
         regions=(HardRegion("rates", {"rate": SLOPES, "depth": decades(1e-300, 700)}, {"sigma_0": 0.75}),),
         naive=(
             Naive(
@@ -218,7 +218,7 @@ FORMULAS = [
         of="estimators.Exponential",
         ours=exponential_depth,
         truth=true_exponential_depth,
-        bound=4.0,
+        bound=2.0,
         regions=(HardRegion("rates", {"rate": SLOPES, "t": decades(1e-150, 1e150)}, {"sigma_0": 0.75}),),
         naive=(
             Naive(
@@ -244,7 +244,7 @@ FORMULAS = [
         of="estimators.HomogeneousSpectralFreePath",
         ours=spectral_density,
         truth=lambda t, sigma_t1, sigma_t2: (sigma_t1 * (-sigma_t1 * t).exp() + sigma_t2 * (-sigma_t2 * t).exp()) / 2,
-        bound=3.0,
+        bound=2.0,
         regions=(
             HardRegion(
                 "thin to opaque", {"t": decades(1e-300, 1e3), "sigma_t2": decades(1e-6, 1e2)}, {"sigma_t1": 0.5}

@@ -270,7 +270,7 @@ FORMULAS = [
         lambda **line: ball.through(unit_ball(), *lines(**line))[0],
         true_entrance,
         PASSING,
-        bound=8.0,
+        bound=3.0,
         naive=(Naive("(-b - sqrt(b^2 - 4 a c))/(2 a)", "textbooks and most renderers", quadratic),),
     ),
     Formula(
@@ -280,7 +280,7 @@ FORMULAS = [
         oracle_enters,
         true_entrance,
         PASSING,
-        bound=8.0,
+        bound=2.0,
     ),
     Formula(
         "geometry/sphere_light",
@@ -289,7 +289,7 @@ FORMULAS = [
         met,
         true_entrance,
         PASSING,
-        bound=8.0,
+        bound=3.0,
     ),
     Formula(
         "geometry/voxels_nearest",
@@ -298,7 +298,7 @@ FORMULAS = [
         tracked("nearest"),
         true_nearest,
         VOXELS,
-        bound=8.0,
+        bound=3.0,
         naive=(Naive("a small step over each face", "renderers that find cells by floor", nudged),),
         size=0.5,
     ),
@@ -309,7 +309,7 @@ FORMULAS = [
         tracked("trilinear"),
         true_trilinear,
         VOXELS,
-        bound=8.0,
+        bound=3.0,
         size=0.34,
     ),
     Formula(
@@ -337,7 +337,7 @@ FORMULAS = [
         length_by(by_reflection),
         true_length,
         POLES,
-        bound=8.0,
+        bound=5.0,
         naive=(FRISVAD,),
     ),
     Formula(
@@ -347,7 +347,7 @@ FORMULAS = [
         length_by(by_duff),
         true_length,
         POLES,
-        bound=8.0,
+        bound=2.0,
         naive=(FRISVAD,),
     ),
 ]

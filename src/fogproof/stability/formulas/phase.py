@@ -13,6 +13,9 @@ from fogproof.stability.forms import each
 from fogproof.stability.formula import BOTH, Formula, HardRegion
 from fogproof.stability.formulas.phase_truth import PHASES, PhaseTruth
 
+USUAL = 6.0
+"""Bound on what a sampler returns, where a phase function has no other."""
+
 
 def region(lobe: PhaseTruth, **first) -> tuple[HardRegion, ...]:
     """Return the grid of a first argument and the lobe's own."""
@@ -51,7 +54,7 @@ def formulas_of(lobe: PhaseTruth) -> Iterator[Formula]:
         ours(lobe, lambda phase, xi: Cosines(phase).sample(xi[:, None]).x),
         lobe.place,
         region(lobe, xi=uniforms),
-        loose.get("cosine", 20.0),
+        loose.get("cosine", USUAL),
         naive("cosine", ()),
         BOTH,
     )
@@ -63,7 +66,7 @@ def formulas_of(lobe: PhaseTruth) -> Iterator[Formula]:
             drawn(lobe, which),
             lambda xi, sign=sign, **p: 1 + sign * lobe.place(xi, **p),
             region(lobe, xi=uniforms),
-            loose.get(which, 20.0),
+            loose.get(which, USUAL),
             naive(which, ()),
             precisions=BOTH,
         )
@@ -74,7 +77,7 @@ def formulas_of(lobe: PhaseTruth) -> Iterator[Formula]:
         drawn(lobe, "pdf"),
         lambda xi, **p: lobe.pdf(lobe.place(xi, **p), **p),
         region(lobe, xi=uniforms),
-        loose.get("pdf_drawn", 20.0),
+        loose.get("pdf_drawn", USUAL),
         precisions=BOTH,
     )
     yield Formula(
@@ -84,7 +87,7 @@ def formulas_of(lobe: PhaseTruth) -> Iterator[Formula]:
         ours(lobe, functions.phase_value),
         lobe.pdf,
         region(lobe, mu=cosines),
-        loose.get("value", 20.0),
+        loose.get("value", 3.0),
         naive("pdf", ()),
     )
     for name, function, truth, first in (

@@ -8,9 +8,9 @@ import numpy as np
 
 from fogproof import analytic
 from fogproof.checks.statistics.moments import Moments
-from fogproof.estimators import regular_tracking
+from fogproof.estimators import RegularFreePath, regular_tracking
 from fogproof.scene import PiecewiseConstantMedium, Ray, VoxelGrid
-from fogproof.stability.axes import both_signs, decades, of
+from fogproof.stability.axes import both_signs, decades, of, uniforms
 from fogproof.stability.exact import flint
 from fogproof.stability.forms import each
 from fogproof.stability.formula import Formula, HardRegion, Naive
@@ -105,6 +105,21 @@ def naive_product(count, sigma):
     return value.astype(float)
 
 
+@each("count", "sigma")
+def free_path(xi, count, sigma):
+    return RegularFreePath(voxels(count, sigma), up(math.inf)).sample(xi[:, None]).x
+
+
+def true_free_path(xi, count, sigma):
+    left, t = -(-xi).log1p(), flint().arb(0)
+    for i in range(int(float(count.mid()))):
+        inside = rounded(sigma, PATTERN[i])
+        if left <= inside:
+            return t + left / inside
+        left, t = left - inside, t + 1
+    return flint().arb.pos_inf()
+
+
 THIN = {"count": of(*COUNTS), "sigma": decades(1e-12, 1e-2)}
 MANY = (HardRegion("thousands", THIN),)
 
@@ -116,7 +131,7 @@ FORMULAS = [
         variance,
         centred(2),
         MOMENTS,
-        bound=8.0,
+        bound=2.0,
         naive=(Naive("E[x^2] - E[x]^2", "textbooks", naive_variance),),
     ),
     Formula(
@@ -126,7 +141,7 @@ FORMULAS = [
         third,
         centred(3),
         MOMENTS,
-        bound=8.0,
+        bound=3.0,
         naive=(Naive("from moments about 0", "textbooks", naive_third),),
     ),
     Formula(
@@ -136,9 +151,19 @@ FORMULAS = [
         each("count", "sigma")(lambda count, sigma: regular_tracking(voxels(count, sigma), up(math.inf)).tau[0]),
         total,
         MANY,
-        bound=20.0,
+        bound=2.0,
         size=0.34,
         condition=False,
+    ),
+    Formula(
+        "sums/free_path",
+        "Free path through a hundred voxels",
+        "estimators.RegularFreePath",
+        free_path,
+        true_free_path,
+        (HardRegion("thin to thick", {"xi": uniforms, "sigma": decades(1e-3, 10.0)}, {"count": 100.0}),),
+        bound=4.0,
+        size=0.5,
     ),
     Formula(
         "sums/layers",

@@ -164,7 +164,7 @@ FORMULAS = [
         lambda xi: Cosines(table()).sample(xi[:, None]).x,
         true_table_place,
         XI,
-        bound=20.0,
+        bound=3.0,
         precisions=BOTH,
     ),
     Formula(
@@ -174,7 +174,7 @@ FORMULAS = [
         lambda xi: functions.polar(table(), xi).pdf,
         lambda xi: true_table(true_table_place(xi)),
         XI,
-        bound=20.0,
+        bound=4.0,
         precisions=BOTH,
     ),
     Formula(
@@ -184,7 +184,7 @@ FORMULAS = [
         lambda mu: functions.phase_value(table(), mu),
         true_table,
         MU,
-        bound=20.0,
+        bound=3.0,
     ),
     Formula(
         "phase/tabulated/oracle_pdf",
