@@ -12,13 +12,17 @@ from fogproof.cli.terminal import say
 @click.command("export")
 @click.argument("scene", metavar="SCENE.toml")
 @click.option(
-    "--to", "target", required=True, type=click.Choice(["mitsuba", "cycles", "json"]), help="For which renderer."
+    "--to",
+    "target",
+    required=True,
+    type=click.Choice(["mitsuba", "cycles", "pbrt", "json"]),
+    help="For which renderer.",
 )
 @click.option(
     "-o", "--output", type=click.Path(path_type=Path, dir_okay=False), help="Write here instead of to stdout."
 )
 def command(scene: str, target: str, output: Path | None) -> int:
-    """Write a scene for another renderer: a script that its own Python runs as `python SCRIPT OUT.exr`, or plain JSON.
+    """Write a scene for another renderer: a script for its own Python, `python SCRIPT OUT.exr`, a file of pbrt-v4, or plain JSON.
 
     Units and conventions are translated in the script, each with a word on it.
 
@@ -33,7 +37,12 @@ def command(scene: str, target: str, output: Path | None) -> int:
     from fogproof.scene.to_json import to_json
 
     read = read_image_scene(scene)
-    text = json.dumps(to_json(read), indent=1) + "\n" if target == "json" else script_of(target, read)
+    if target == "pbrt":
+        from fogproof.renderers.pbrt import pbrt_text
+
+        text = pbrt_text(read)
+    else:
+        text = json.dumps(to_json(read), indent=1) + "\n" if target == "json" else script_of(target, read)
     if output is None:
         click.echo(text, nl=False)
     else:
