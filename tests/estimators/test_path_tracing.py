@@ -69,6 +69,7 @@ SLABS = {
     "early roulette": lambda: (
         PathTracer(FOG, SLAB, ABOVE, SKY, BLACK, roulette=Roulette(0, 0.75)),
         slab_reflectance(0.9, 1.0, 0.5),
+        2_000_000,  # skewed: fewer do not always decide
     ),
     "tilted": lambda: (
         PathTracer(

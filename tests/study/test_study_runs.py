@@ -240,6 +240,23 @@ def test_the_largest_deviations_are_all_there_down_to_the_least_that_is_kept(tmp
     assert seen
 
 
+def test_the_cost_of_a_realisation_is_no_mean_over_batches(tmp_path):
+    """The last batch is smaller than the others."""
+    study = study_from({**SMALL, "replicates": 9})
+    drawn(study, tmp_path)
+    cells, batches = cells_of(study), batches_of(cells_of(study))
+    with opened(tmp_path, study) as store:
+        rows = [(*row[:3], float(row[0] % 7), *row[4:]) for row in store.rows()]
+    levels, unlike = aggregate.levels_of(iter(rows), cells, batches), 0
+    for stretch in batches.stretches:
+        level = levels[stretch.cell].pop(0)
+        own = [batches[row[0]] for row in rows if 0 <= row[0] - stretch.begin < level.batches]
+        n = np.array([batch.replicates * batch.samples for batch in own])
+        assert level.cost == pytest.approx(np.average([batch.number % 7 for batch in own], weights=n), rel=1e-12)
+        unlike += len(set(n)) > 1
+    assert unlike
+
+
 def test_an_estimator_that_always_fails_costs_the_others_nothing(tmp_path):
     cells = cells_of(STUDY)
 

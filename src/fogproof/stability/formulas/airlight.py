@@ -217,7 +217,7 @@ FORMULAS = [
                 "light beside", {"g": symmetric(1e-4), "h": decades(1e-9, 1e3)}, {"sigma_t": 0.5, "a": -0.75, "b": 1.5}
             ),
         ),
-        size=0.34,
+        size=0.29,
         condition=False,
     ),
     Formula(

@@ -1,0 +1,43 @@
+"""An error is reached where the measured curve stays below it from then on; times are read off between the measured counts."""
+
+import numpy as np
+import pytest
+
+from fogproof.study.convergence import Estimate
+from fogproof.study.reaching import ErrorOverTime, reach_of
+from fogproof.study.speed import Times
+
+COUNTS = np.array([10, 100, 1000])
+
+
+def reach(sizes, target, law=None, stays=0.0):
+    errors = [Estimate(size, size, size) for size in sizes]
+    times = [Times(np.array([1e-3 * count, 1.1e-3 * count])) for count in COUNTS]
+    return reach_of(ErrorOverTime(COUNTS, errors, times, law, stays), target, target)
+
+
+@pytest.mark.parametrize(
+    ("sizes", "target", "how", "samples"),
+    [
+        ((0.1, 0.01, 0.001), 0.01, "measured", 100),
+        ((0.1, 0.01, 0.001), 10**-2.5, "measured", 10**2.5),
+        ((0.1, 0.01, 0.001), 0.2, "less-than", 10),
+        ((0.1, 0.01, 0.001), 1e-4, "not-reached", None),
+        ((0.2, 0.05, 0.3), 0.1, "not-reached", None),  # it was below, and rises again
+        ((0.05, 0.2, 0.02), 0.1, "measured", 100 * 10 ** (np.log10(2) / 1)),  # the first time does not count
+    ],
+)
+def test_the_error_stays_below_from_there_on(sizes, target, how, samples):
+    found = reach(sizes, target)
+    assert (found.how, found.samples) == (how, samples if samples is None else pytest.approx(samples, rel=1e-12))
+
+
+def test_what_no_count_takes_away_is_never_reached():
+    assert reach((0.1, 0.05, 0.05), 0.01, stays=0.05).how == "never"
+
+
+def test_independent_samples_follow_their_law():
+    found = reach((0.1, 0.03, 0.01), 0.02, law=Estimate(0.1, 0.09, 0.11))
+    assert (found.how, found.samples) == ("measured", pytest.approx(0.1 / 0.02**2, rel=1e-12))
+    assert found.seconds.value == pytest.approx(np.sqrt(1.1) * 1e-3 * 250, rel=1e-9)
+    assert reach((0.1, 0.03, 0.01), 0.001, law=Estimate(0.1, 0.09, 0.11)).how == "extrapolated"
