@@ -9,7 +9,7 @@ from pathlib import Path
 
 import click
 
-from fogproof.cli.signals import code_of, stoppable
+from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
 
 
@@ -47,19 +47,15 @@ def command(names: tuple[str, ...], folder: Path | None, seconds: float, as_json
     chosen = select(names)
     started, clock = datetime.datetime.now(datetime.UTC), time.perf_counter()
     rows: list[WayTime] = []
-    stopped = 0
-    try:
-        with stoppable():
-            for benchmark in chosen:
-                if missing(benchmark):
-                    say(f"{benchmark.name}: skipped, {benchmark.needs} is not installed", err=True)
-                    continue
-                found = measure(benchmark, seconds)
-                rows += found
-                if not as_json:
-                    say(table(found) if benchmark is chosen[0] else table(found).split("\n", 2)[2])
-    except KeyboardInterrupt as stop:
-        stopped = code_of(stop)
+    with interruptible() as stop:
+        for benchmark in chosen:
+            if missing(benchmark):
+                say(f"{benchmark.name}: skipped, {benchmark.needs} is not installed", err=True)
+                continue
+            found = measure(benchmark, seconds)
+            rows += found
+            if not as_json:
+                say(table(found) if benchmark is chosen[0] else table(found).split("\n", 2)[2])
     spent = time.perf_counter() - clock
     record = run_record(rows, started.isoformat(timespec="seconds"), spent)
     if as_json:
@@ -71,4 +67,4 @@ def command(names: tuple[str, ...], folder: Path | None, seconds: float, as_json
         say(f"table: {write_record(record, rows, chosen, folder)}", err=True)
     judged = [row for row in rows if row.met is not None]
     say(f"{len(rows)} ways; {sum(bool(r.met) for r in judged)} of {len(judged)} goals met; {spent:.0f} s", err=True)
-    return stopped
+    return stop.code
