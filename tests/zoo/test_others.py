@@ -13,9 +13,9 @@ from fogproof.zoo.others.cells import expected, pooled
 from fogproof.zoo.running import ZooRow
 
 SPHERE = Planted(lambda u: directions(2 * u[:, 0] - 1, u[:, 1]), even, UnitSphere(), 2)
-BENT = Planted(lambda u: directions(2 * u[:, 0] ** 1.3 - 1, u[:, 1]), even, UnitSphere(), 2)
+BENT = Planted(lambda u: directions(2 * u[:, 0] ** 3 - 1, u[:, 1]), even, UnitSphere(), 2)
 LINE = Planted(lambda u: np.sqrt(u[:, 0]), lambda x: 2 * x, Interval(0, 1), 1)
-BENT_LINE = Planted(lambda u: u[:, 0] ** 0.65, lambda x: 2 * x, Interval(0, 1), 1)
+BENT_LINE = Planted(lambda u: u[:, 0] ** 1.5, lambda x: 2 * x, Interval(0, 1), 1)
 
 
 @pytest.mark.parametrize("test", other_tests(), ids=lambda test: test.name)
@@ -63,9 +63,10 @@ def test_the_page_counts_kills_and_false_alarms_of_each_test():
         )
 
     rows = [row("field/a", "killed", 1e-4), row("field/b", "survived", 0.5), row("right/c", "passed", 1e-9, ())]
-    text = page(rows, 1_000_000, 1e-6)
+    text = page(rows, 1_000_000, 1e-6, {"field": 3, "right": 4})
     nori = next(line for line in text.splitlines() if line.startswith("| Nori"))
     assert [cell.strip() for cell in nori.split("|")[4:-1]] == ["1 of 2", "0", "1", "1 of 1", "1", "0"]
     assert "`field/b` (field/b): survived" in text
     assert "| field/a | thread#1 | shape | 7 |" in text
-    assert "Right subjects: 0 of 1 rejected" in text
+    assert "Right subjects, 1 of 4 run: 0 rejected" in text
+    assert "| field | 2 of 3 | 1 of 2 |" in text

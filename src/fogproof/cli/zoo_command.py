@@ -62,7 +62,7 @@ def command(
     \b
     Example:  fogproof zoo field errata -o build/zoo
     """
-    from fogproof.zoo import select
+    from fogproof.zoo import bugs_of, select
     from fogproof.zoo.matrix import counts, line, summary
     from fogproof.zoo.running import ZooLog, run_zoo
 
@@ -100,7 +100,9 @@ def command(
     if folder is not None:
         from fogproof.zoo.comparison import page
 
-        (folder / "zoo.md").write_text(page(rows, samples, alpha))
+        (folder / "zoo.md").write_text(
+            page(rows, samples, alpha, {name: len(bugs_of(name)) for name in {bug.folder for bug in chosen}})
+        )
     say(summary(rows), err=True)
     say(f"{len(rows)} of {len(chosen)} run; seed {seed}", err=True)
     return stopped or int(not all(count.good for count in counts(rows)))

@@ -56,7 +56,7 @@ def select(patterns: Iterable[str], one_in: int = 1) -> list[Bug]:
     chosen: dict[str, Bug] = {}
     for pattern in list(patterns) or FOLDERS:
         first = pattern.partition("/")[0]
-        offered = bugs_of(first) if first in FOLDERS else all_bugs()
+        offered = bugs_of(first) if first in FOLDERS else all_bugs() if set(first) & set("*?[") else ()
         folder = pattern.rstrip("/")
         hits = [b for b in offered if b.name.startswith(f"{folder}/") or b.name == folder]
         hits = hits or [b for b in offered if fnmatch.fnmatchcase(b.name, pattern)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from fogproof.zoo.matrix import GOALS, ZooCount, counts
 from fogproof.zoo.others import OtherTest, other_tests
@@ -51,13 +51,13 @@ a test does not apply).
 """
 
 
-def page(rows: Iterable[ZooRow], samples: int, alpha: float) -> str:
-    """Return the page as Markdown."""
+def page(rows: Iterable[ZooRow], samples: int, alpha: float, existing: Mapping[str, int]) -> str:
+    """Return the page as Markdown; `existing` says how many bugs each folder has, run or not."""
     rows = list(rows)
     return _PAGE.format(
         samples=samples,
         alpha=alpha,
-        folders=_folders(counts(rows)),
+        folders=_folders(counts(rows), existing),
         others=_others(rows),
         survivors=_survivors(rows),
         bugs=_bugs([row for row in rows if row.folder in ("field", "errata", "families")]),
@@ -70,13 +70,14 @@ def _table(head: Sequence[str], rows: Iterable[Sequence[object]], numbers: int) 
     return "\n".join("| " + " | ".join(map(str, row)) + " |" for row in (head, line, *rows))
 
 
-def _folders(sums: list[ZooCount]) -> str:
+def _folders(sums: list[ZooCount], existing: Mapping[str, int]) -> str:
     def share(part: int, whole: int) -> str:
         return f"{part} of {whole}" if whole else "–"
 
     bugs = [
         (
             c.folder,
+            share(c.total, existing[c.folder]),
             share(c.killed, c.feasible),
             share(c.named, c.killed),
             c.infeasible,
@@ -87,13 +88,13 @@ def _folders(sums: list[ZooCount]) -> str:
         for c in sums
         if not c.right
     ]
-    head = ("bugs", "killed", "cause right", "infeasible", "equal", "median samples", "goal")
+    head = ("bugs", "run", "killed", "cause right", "infeasible", "equal", "median samples", "goal")
     right = [
-        f"Right subjects: {c.false_alarms} of {c.total} rejected, {c.inconclusive} inconclusive (goal: none, and at most 2 %)."
+        f"Right subjects, {share(c.total, existing[c.folder])} run: {c.false_alarms} rejected, {c.inconclusive} inconclusive (goal: none, and at most 2 %)."
         for c in sums
         if c.right
     ]
-    return "\n\n".join([_table(head, bugs, 6), *right])
+    return "\n\n".join([_table(head, bugs, 7), *right])
 
 
 def rejected(test: OtherTest, row: ZooRow, level: float | None = None) -> bool | None:

@@ -157,7 +157,7 @@ class ZooLog:
         if first != self.settings:
             what = f"{self.path} is of other settings, {first}; choose another folder, or delete it"
             raise InvalidInputError(what, str(self.path))
-        return rows
+        return list({row.name: row for row in rows}.values())
 
     def add(self, row: ZooRow) -> None:
         """Write one row."""
