@@ -11,19 +11,27 @@ import math
 import numpy as np
 
 from fogproof.analytic.airlight.incident import Incident
+from fogproof.errors import UnsupportedError
 from fogproof.scene.lights import EnvironmentMap
 
-FEWEST = 2
-"""Nodes along each side of a pixel."""
+MOST_LIT = 2048
+"""Pixels that are integrated over, dark ones not counted."""
 
 
 def incident(light: EnvironmentMap, x: np.ndarray, nodes: int) -> Incident:
-    """Return the same directions for all points: as many nodes from pole to pole as for other lights, twice as many around."""
+    """Return the same directions for all points: as many nodes from pole to pole as for other lights, twice as many around.
+
+    Whatever the pixels, a rule with more nodes has more in each of them: what two rules differ by is the error.
+    """
     rows, columns = light.image.shape
     lit_row, lit_column = np.nonzero(light.image if np.any(light.image) else light.image == 0)
+    if len(lit_row) > MOST_LIT:
+        what = f"the oracle integrates over at most {MOST_LIT} lit pixels, and this picture has {len(lit_row)}"
+        raise UnsupportedError(f"{what}: take means over blocks of them", "light.image")
+    fewest = math.ceil(nodes / 8) + 1
     edges = np.cos(np.pi * np.arange(rows + 1) / rows)
-    y, dy = _rule(math.ceil(2 * nodes / rows))
-    z, dz = _rule(math.ceil(4 * nodes / columns))
+    y, dy = _rule(max(fewest, math.ceil(2 * nodes / rows)))
+    z, dz = _rule(max(fewest, math.ceil(4 * nodes / columns)))
     high, low = edges[lit_row], edges[lit_row + 1]
     cosine = low[:, None] + (high - low)[:, None] * y
     phi = 2 * np.pi / columns * (lit_column[:, None] + z)
@@ -39,5 +47,5 @@ def incident(light: EnvironmentMap, x: np.ndarray, nodes: int) -> Incident:
 
 def _rule(count: int) -> tuple[np.ndarray, np.ndarray]:
     """Return nodes in (0, 1) and weights that sum to 1."""
-    y, weights = np.polynomial.legendre.leggauss(max(FEWEST, count))
+    y, weights = np.polynomial.legendre.leggauss(count)
     return 0.5 * (y + 1), 0.5 * weights

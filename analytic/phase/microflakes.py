@@ -60,7 +60,8 @@ def microflake_pdf(flakes: Microflakes, w_in: PointArray, w_out: PointArray) -> 
     formula, method = (
         (_specular, "closed form") if flakes.reflection == "specular" else (_diffuse, "Gauss-Legendre on a lune")
     )
-    value, error = formula(flakes.S, i.reshape(-1, 3), o.reshape(-1, 3))
+    S = flakes.S / np.abs(flakes.S).max()  # its size does not matter
+    value, error = formula(S, i.reshape(-1, 3), o.reshape(-1, 3))
     return Reference(value.reshape(i.shape[:-1]), error.reshape(i.shape[:-1]), method, SOURCE)
 
 

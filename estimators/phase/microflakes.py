@@ -40,7 +40,7 @@ class MicroflakeDirections:
 
     @cached_property
     def _factor(self) -> np.ndarray:
-        return np.linalg.cholesky(self.flakes.S)
+        return np.linalg.cholesky(self.flakes.S / np.trace(self.flakes.S))
 
     @cached_property
     def _back(self) -> np.ndarray:

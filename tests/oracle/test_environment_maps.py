@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from fogproof.analytic import single_scattering
+from fogproof.analytic.airlight.incident import NODES
+from fogproof.analytic.lights.environment_map import incident
 from fogproof.checks import check_estimator, fresh_seed
 from fogproof.errors import InvalidValueError, UnsupportedError
 from fogproof.estimators import Airlight, PathTracer
@@ -91,14 +93,10 @@ def test_the_estimator_finds_the_same():
     check_estimator(drawn.draw, right, samples=40_000, alpha=ALPHA, seed=fresh_seed()).raise_if_rejected()
 
 
-def test_dark_pictures_and_colours():
+def test_dark_pictures():
     dark = EnvironmentMap(np.zeros((2, 4)))
     assert single_scattering(FOG, RAY, dark, shape=LAYER).value == 0
     assert np.all(Airlight(FOG, RAY, dark, "distance", shape=LAYER).draw(np.random.default_rng(0), 9).value == 0)
-    sun = [[0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0]]
-    both = single_scattering(Medium((0.1, 0.2), (0.4, 0.4)), RAY, EnvironmentMap(sun, (1.0, 2.0)), shape=LAYER)
-    one = single_scattering(Medium(0.2, 0.4), RAY, EnvironmentMap(sun, 2.0), shape=LAYER)
-    assert abs(both.value[1] - one.value) <= both.error[1] + one.error
 
 
 REFUSED = [
@@ -117,7 +115,20 @@ def test_bad_pictures_are_refused(make, message):
         make()
 
 
+def test_rules_with_more_nodes_have_more_in_each_pixel():
+    """Otherwise two rules would be one, and their difference, the error, 0."""
+    for shape in ((1, 1), (4, 8), (30, 60)):
+        sizes = [incident(EnvironmentMap(np.ones(shape)), np.zeros((1, 3)), n).weight.shape[1] for n in NODES]
+        assert np.all(np.diff(sizes) > 0)
+    fine = EnvironmentMap(np.ones((12, 24)), 2.0)
+    right = single_scattering(FOG, RAY, Environment(2.0), shape=LAYER)
+    found = single_scattering(FOG, RAY, fine, shape=LAYER)
+    assert abs(found.value - right.value) <= found.error + right.error
+
+
 def test_what_is_not_followed_is_refused_by_name():
+    with pytest.raises(UnsupportedError, match="at most 2048 lit pixels, and this picture has 8192: take means"):
+        single_scattering(FOG, RAY, EnvironmentMap(np.ones((64, 128))), shape=LAYER)
     with pytest.raises(UnsupportedError, match="EnvironmentMap"):
         PathTracer(Medium(0.1, 0.9, Isotropic()), BALL, RAY, EnvironmentMap(IMAGE)).draw(np.random.default_rng(0), 10)
 

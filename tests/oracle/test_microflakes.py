@@ -98,6 +98,16 @@ def test_straight_ahead_the_bound_is_what_any_flake_may_do():
     assert microflake_pdf(diffuse(SHEET), W, W).error < 1e-10
 
 
+def test_the_size_of_the_flakes_does_not_matter():
+    x = sphere(20)
+    for flakes in (FIBRE, diffuse(FIBRE)):
+        right = microflake_pdf(flakes, W, x).value
+        for scale in (1e-200, 1e200):
+            scaled = Microflakes(scale * flakes.S, flakes.reflection)
+            assert np.allclose(microflake_pdf(scaled, W, x).value, right, rtol=1e-12)
+            assert np.allclose(MicroflakeDirections(scaled, tuple(W)).pdf(x), right, rtol=1e-8)
+
+
 def test_mitsuba_has_the_same_mirrors():
     mi = pytest.importorskip("mitsuba")
     mi.set_variant("scalar_rgb")
