@@ -113,9 +113,7 @@ def _say(message: object, code: int, who: str = "fogproof: ") -> int:
     return code
 
 
-def _warn(
-    message: object, category: type[Warning], filename: str, lineno: int, file: object = None, line: object = None
-) -> None:
+def _warn(message: object, category: type[Warning], filename: str, lineno: int, *_: object) -> None:
     """Tell a warning that somebody's file raises as a sentence: whatever it holds cannot move the cursor."""
     _say(f"{Path(filename).name}, line {lineno}: {category.__name__}: {one_line(str(message))}", 0)
 
