@@ -225,7 +225,7 @@ def crop_off_by_one(setting, draw):
     camera = setting.scene.camera
     if camera.film.crop:
         x, y, width, height = camera.film.crop
-        camera = replace(camera, film=replace(camera.film, crop=(x + 1, y, width, height)))
+        camera = replace(camera, film=replace(camera.film, crop=(x + 4, y, width, height)))
     return draw(setting.but(camera=camera))
 
 
@@ -241,10 +241,11 @@ def no_sign(setting, draw):
 
 
 def cosine(setting, draw):
-    if not (isinstance(setting.light, DirectionalLight) and isinstance(setting.shape, Slab)):
+    normal = getattr(setting.shape, "normal", getattr(setting.medium, "axis", None))
+    if not isinstance(setting.light, DirectionalLight) or normal is None:
         return draw(setting)
     ahead = np.subtract(setting.scene.camera.target, setting.scene.camera.origin)
-    return draw(setting) * abs(ahead @ np.asarray(setting.shape.normal)) / np.linalg.norm(ahead)
+    return draw(setting) * abs(ahead @ np.asarray(normal)) / np.linalg.norm(ahead)
 
 
 FAULTS = {

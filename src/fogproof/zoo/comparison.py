@@ -90,7 +90,8 @@ def _folders(sums: list[ZooCount], existing: Mapping[str, int]) -> str:
     ]
     head = ("bugs", "run", "killed", "cause right", "infeasible", "equal", "median samples", "goal")
     right = [
-        f"Right subjects, {share(c.total, existing[c.folder])} run: {c.false_alarms} rejected, {c.inconclusive} inconclusive (goal: none, and at most 2 %)."
+        f"Right subjects, {share(c.total, existing[c.folder])} run: {c.false_alarms} rejected, {c.inconclusive} inconclusive"
+        " (goal: none, and at most 2 %)."
         for c in sums
         if c.right
     ]
