@@ -72,7 +72,7 @@ def cli() -> None:
 def main(arguments: list[str] | None = None) -> Any:
     """Run the command line. Every end is a sentence and a code; 1 means that something was rejected, and nothing else."""
     code = _FAULT
-    warnings.showwarning = _warn  # type: ignore[assignment]
+    warnings.showwarning = _warn
     try:
         code = cli.main(arguments, standalone_mode=False)
         if sys.stdout is not None:
