@@ -76,7 +76,7 @@ def cli() -> None:
 
 def main(arguments: list[str] | None = None) -> Any:
     """Run the command line. Every end is a sentence and a code; 1 means that something was rejected, and nothing else."""
-    warnings.showwarning = _warn  # type: ignore[assignment]
+    warnings.showwarning = _warn
     with stoppable() as listening:
         try:
             code = _run(arguments)
@@ -127,7 +127,14 @@ def _say(message: object, code: int, who: str = "fogproof: ") -> int:
     return code
 
 
-def _warn(message: object, category: type[Warning], filename: str, lineno: int, *_: object) -> None:
+def _warn(
+    message: Warning | str,
+    category: type[Warning],
+    filename: str,
+    lineno: int,
+    file: object = None,
+    line: str | None = None,
+) -> None:
     """Tell a warning that somebody's file raises as a sentence: whatever it holds cannot move the cursor."""
     _say(f"{Path(filename).name}, line {lineno}: {category.__name__}: {one_line(str(message))}", 0)
 
