@@ -47,6 +47,7 @@ def command(names: tuple[str, ...], folder: Path | None, seconds: float, as_json
     chosen = select(names)
     started, clock = datetime.datetime.now(datetime.UTC), time.perf_counter()
     rows: list[WayTime] = []
+    asked = [benchmark.name for benchmark in chosen if not missing(benchmark)]
     with interruptible() as stop:
         for benchmark in chosen:
             if missing(benchmark):
@@ -56,8 +57,11 @@ def command(names: tuple[str, ...], folder: Path | None, seconds: float, as_json
             rows += found
             if not as_json:
                 say(table(found) if benchmark is chosen[0] else table(found).split("\n", 2)[2])
+    if stop.code:
+        reached = len({row.benchmark for row in rows})
+        say(f"stopped after {reached} of {len(asked)} benchmarks; these are kept", err=True)
     spent = time.perf_counter() - clock
-    record = run_record(rows, started.isoformat(timespec="seconds"), spent)
+    record = run_record(rows, started.isoformat(timespec="seconds"), spent, asked, stop.code)
     if as_json:
         say(json.dumps(record))
     if folder is not None:

@@ -12,7 +12,7 @@ import click
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
 from fogproof.images.judging import ALPHA, TOLERANCE
-from fogproof.images.relation_run import RelationRun, run_relations, write_record
+from fogproof.images.relation_run import RelationRun, count_relations, run_relations, write_record
 from fogproof.renderers.table import renderer_of
 
 
@@ -83,16 +83,17 @@ def command(
     )  # fmt: skip
     prepare_folder(folder, force=force)
     rows: list[dict[str, Any]] = []
+    asked = count_relations(scenes, run, folder)
     with interruptible() as stop:
         for row in run_relations(scenes, run, folder):
             rows.append(row)
             say(json.dumps(row) if as_json else _line(row))
-            write_record(rows, run, folder)
+            write_record(rows, run, folder, asked, whole=False)
     if stop.code:
-        say(f"stopped after {len(rows)} relations; what was rendered is kept", err=True)
+        say(f"stopped after {len(rows)} of {asked} relations; what was rendered is kept", err=True)
     if only and not rows and not stop.code:
         raise click.UsageError(f"no relation of these scenes is named {' or '.join(only)}")
-    say(f"report: {write_record(rows, run, folder)}", err=True)
+    say(f"report: {write_record(rows, run, folder, asked, whole=not stop.code)}", err=True)
     outcomes = {row["outcome"] for row in rows}
     return stop.code or (1 if "rejected" in outcomes else 0 if outcomes <= {"not rejected"} else 3)
 

@@ -69,10 +69,10 @@ def command(
         for row in render_scenes(scenes, wanted, folder):
             rows.append(row)
             say(json.dumps(row) if as_json else _line(row, width))
-            write_page(rows, wanted, folder)
+            write_page(rows, wanted, folder, len(scenes))
     if stop.code:
         say(f"stopped after {len(rows)} of {len(scenes)} scenes; these are kept", err=True)
-    say(f"report: {write_page(rows, wanted, folder)}", err=True)
+    say(f"report: {write_page(rows, wanted, folder, len(scenes))}", err=True)
     outcomes = {row["outcome"] for row in rows}
     return stop.code or (1 if "rejected" in outcomes else 0 if outcomes <= {"not rejected"} else 3)
 

@@ -73,6 +73,8 @@ def command(names: tuple[str, ...], folder: Path | None, brief: bool, force: boo
         started=started.isoformat(timespec="seconds"),
         seconds=seconds,
         points=points,
+        asked=len(chosen),
+        stopped=stop.code,
     )
     if as_json:
         say(json.dumps(told))

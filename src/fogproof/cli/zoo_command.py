@@ -89,14 +89,16 @@ def command(
                 log.add(row)
             say(json.dumps(asdict(row)) if as_json else line(row, width))
     if stop.code:
-        say(f"stopped after {len(rows)} of {len(chosen)} bugs", err=True)
+        say(f"stopped after {len(rows)} of {len(chosen)} bugs; these are kept", err=True)
     order = {bug.name: i for i, bug in enumerate(chosen)}
     rows.sort(key=lambda row: order[row.name])
     if folder is not None:
         from fogproof.zoo.comparison import page
 
         (folder / "zoo.md").write_text(
-            page(rows, samples, alpha, {name: len(bugs_of(name)) for name in {bug.folder for bug in chosen}})
+            page(
+                rows, samples, alpha, {name: len(bugs_of(name)) for name in {bug.folder for bug in chosen}}, len(chosen)
+            )
         )
     say(summary(rows), err=True)
     say(f"{len(rows)} of {len(chosen)} run; seed {seed}", err=True)
