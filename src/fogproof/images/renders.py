@@ -72,7 +72,8 @@ def render_scenes(scenes: Sequence[Path], wanted: Wanted, folder: Path) -> Itera
 
 def write_page(rows: Sequence[dict[str, Any]], wanted: Wanted, folder: Path) -> Path:
     """Write the page of all rows so far and their record."""
-    write_file(folder / "results.json", json.dumps({"renderer": wanted.renderer.name, "rows": list(rows)}, indent=1))
+    record = {"format": "fogproof-renders-1", "renderer": wanted.renderer.name, "rows": list(rows)}
+    write_file(folder / "results.json", json.dumps(record, indent=1))
     return write_renders_page(rows, wanted.renderer.name, folder)
 
 
