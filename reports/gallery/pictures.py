@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from fogproof.checks.streams import batch_generator
-from fogproof.errors import InvalidInputError, NotInstalledError, shorten
+from fogproof.errors import InvalidInputError, NotInstalledError, shorten, stop_behind
 from fogproof.reports.charts.pictures import Picture
 from fogproof.reports.files import write_file
 from fogproof.reports.gallery.airlight import FoggyScene, Glow, SamplesAroundALight
@@ -20,6 +20,7 @@ from fogproof.reports.gallery.plots import Plot, render_plot
 from fogproof.reports.gallery.sky import SkyAndSunset
 from fogproof.reports.gallery.tracking import Collisions
 from fogproof.reports.pages.templates import fill
+from fogproof.text import state, unfinished
 
 
 def drawings(seed: int) -> dict[str, tuple[str, Plot]]:
@@ -50,6 +51,8 @@ def drawings(seed: int) -> dict[str, tuple[str, Plot]]:
 def write_gallery(folder: str | Path, seed: int = 0, names: Sequence[str] = ()) -> Path:
     """Write `folder/gallery.html`, its pictures as `folder/figures/*.png` and `*.svg`, and `gallery.json`; return the page's path.
 
+    KeyboardInterrupt goes on after what has been drawn is written.
+
     names  which pictures to draw, all for none
     """
     folder = Path(folder)
@@ -59,8 +62,11 @@ def write_gallery(folder: str | Path, seed: int = 0, names: Sequence[str] = ()) 
             raise InvalidInputError(f"no picture is called {shorten(name)}; known are {', '.join(known)}", name)
     pictures: list[tuple[str, Picture, str]] = []
     missing: list[tuple[str, str]] = []
-    for name, (title, drawing) in known.items():
-        if not names or name in names:
+    asked = [name for name in known if not names or name in names]
+    stopped: BaseException | None = None
+    try:
+        for name in asked:
+            title, drawing = known[name]
             try:
                 picture = render_plot(drawing, name)
             except NotInstalledError as error:
@@ -70,9 +76,16 @@ def write_gallery(folder: str | Path, seed: int = 0, names: Sequence[str] = ()) 
                 continue
             picture.save(folder / "figures")
             pictures.append((title, picture, f"fogproof gallery {name} -o DIR --seed {seed}"))
+    except BaseException as error:
+        stopped = stop_behind(error)
+        if stopped is None:
+            raise
+    part = unfinished(len(pictures), len(asked) - len(missing), stopped is not None)
     record = {
         "schema": "fogproof/gallery/1",
         "seed": seed,
+        "state": state(stopped),
+        "title": part,
         "pictures": [
             {"name": picture.stem, "title": title, "words": picture.words, "reproduce": command}
             for title, picture, command in pictures
@@ -85,7 +98,13 @@ def write_gallery(folder: str | Path, seed: int = 0, names: Sequence[str] = ()) 
         kind="gallery",
         pictures=pictures,
         missing=missing,
-        headline=("Light in fog, in pictures", f"{len(pictures)} pictures, seed {seed}"),
+        headline=(
+            f"{part} pictures" if part else "Light in fog, in pictures",
+            f"{len(pictures)} pictures, seed {seed}",
+        ),
         tone="plain",
     )
-    return write_file(folder / "gallery.html", page)
+    path = write_file(folder / "gallery.html", page)
+    if stopped is not None:
+        raise stopped
+    return path

@@ -37,21 +37,23 @@ def write_image_page(record: Mapping[str, Any], pictures: Mapping[str, bytes], f
     return write_file(folder / "index.html", page)
 
 
-def write_renders_page(rows: Sequence[Mapping[str, Any]], renderer: str, folder: Path) -> Path:
-    """Write the page of many scenes rendered by one renderer; return its path."""
+def write_renders_page(rows: Sequence[Mapping[str, Any]], renderer: str, folder: Path, title: str = "") -> Path:
+    """Write the page of many scenes rendered by one renderer; return its path. `title` says how much of it there is yet, or ""."""
     counts: dict[str, int] = {}
     for row in rows:
         counts[row["outcome"]] = counts.get(row["outcome"], 0) + 1
     told = ", ".join(f"{count} {outcome}" for outcome, count in counts.items()) or "nothing yet"
-    tone = "rejected" if counts.get("rejected") or counts.get("error") else "not-rejected"
-    page = fill(
-        "renders.html", kind="renders", headline=(f"{len(rows)} scenes by {renderer}", told), tone=tone, rows=rows
-    )
+    tone = "rejected" if counts.get("rejected") or counts.get("error") else "care" if title else "not-rejected"
+    first = f"{title or len(rows)} scenes by {renderer}"
+    page = fill("renders.html", kind="renders", headline=(first, told), tone=tone, rows=rows)
     return write_file(folder / "index.html", page)
 
 
-def write_relations_page(rows: Sequence[Mapping[str, Any]], renderer: str, folder: Path) -> Path:
-    """Write the page of the relations that a renderer keeps and breaks, scene by scene; return its path."""
+def write_relations_page(rows: Sequence[Mapping[str, Any]], renderer: str, folder: Path, title: str = "") -> Path:
+    """Write the page of the relations that a renderer keeps and breaks, scene by scene; return its path.
+
+    title  how much of it there is yet, "" if all
+    """
     broken = [row for row in rows if row["outcome"] == "rejected"]
     errors = [row for row in rows if row["outcome"] == "error"]
     kept = sum(row["outcome"] == "not rejected" for row in rows)
@@ -59,8 +61,8 @@ def write_relations_page(rows: Sequence[Mapping[str, Any]], renderer: str, folde
     page = fill(
         "relations.html",
         kind="relations",
-        headline=(f"Relations of {renderer}", told),
-        tone="rejected" if broken or errors else "not-rejected",
+        headline=(f"{title} relations of {renderer}" if title else f"Relations of {renderer}", told),
+        tone="rejected" if broken or errors else "care" if title else "not-rejected",
         rows=rows,
         broken=broken,
         scenes=list(dict.fromkeys(row["scene"] for row in rows)),

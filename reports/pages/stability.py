@@ -34,7 +34,7 @@ def write_stability(record: dict[str, Any], folder: str | Path) -> Path:
         run=run,
         maps=maps,
         headline=headline(run),
-        tone="bad" if run.broken else "good",
+        tone="bad" if run.broken else "care" if run.title else "good",
     )
     return write_file(folder / "stability.html", page)
 
@@ -48,6 +48,8 @@ def headline(run: StabilityRecord) -> tuple[str, str]:
         if broken
         else f"No bound of {len(run.formulas)} formulas is broken; {seen} of {len(run.naive)} naive forms fail"
     )
+    if run.title:
+        first = f"{run.title} formulas were measured; {first[0].lower()}{first[1:]}"
     points = sum(row.points for row in run.ours)
     return first, f"{points} values of ours beside 50-digit truth, {run.seconds:.0f} s, {run.started}"
 

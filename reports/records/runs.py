@@ -21,7 +21,7 @@ from fogproof.plan import Plan
 from fogproof.reports.charts.findings import parse_figure
 from fogproof.reports.files import write_file
 from fogproof.reports.validation import adapter
-from fogproof.text import spreadsheet_cell
+from fogproof.text import spreadsheet_cell, unfinished
 from fogproof.verify import TwinResult
 
 SCHEMA = "fogproof/results/1"
@@ -90,7 +90,7 @@ class RunRecord:
     def unfinished(self) -> str:
         """How much of what was asked for is there, in words; "" if all of it is."""
         whole = len(self.cases) + len(self.missing)
-        return f"Unfinished: {len(self.cases)} of {whole}" if self.missing or self.state == "interrupted" else ""
+        return unfinished(len(self.cases), whole, self.state == "interrupted")
 
 
 def parse_record(record: Any, origin: str = "record") -> RunRecord:

@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from fogproof.errors import InvalidInputError
 from fogproof.input_files import read_text
@@ -39,6 +39,8 @@ class StabilityRecord:
     points: int
     formulas: dict[str, Told]
     measured: tuple[FormError, ...]
+    state: Literal["finished", "interrupted"] = "finished"
+    title: str = ""
 
     @property
     def ours(self) -> list[FormError]:

@@ -93,6 +93,20 @@ class SubjectError(FogproofError):
     code = "subject-failed"
 
 
+def stop_behind(error: BaseException) -> KeyboardInterrupt | None:
+    """Return the interruption that an error is, or that caused it: code in C may turn one into a SystemError; None otherwise."""
+    seen: set[int] = set()
+    ahead: list[BaseException | None] = [error]
+    while ahead:
+        one = ahead.pop()
+        if isinstance(one, KeyboardInterrupt):
+            return one
+        if one is not None and id(one) not in seen:
+            seen.add(id(one))
+            ahead += [one.__context__, one.__cause__]
+    return None
+
+
 def _restored(kind: type[FogproofError], args: tuple[Any, ...], held: dict[str, Any]) -> FogproofError:
     error = kind.__new__(kind, *args)
     error.args = args

@@ -21,6 +21,20 @@ def one_line(text: str) -> str:
     return " ".join(visible(text).split())
 
 
+def unfinished(done: int, asked: int, stopped: bool = False) -> str:
+    """Return how much of what was asked for is there, "" if all of it is and nothing was stopped.
+
+    >>> unfinished(2, 62), unfinished(62, 62)
+    ('Unfinished: 2 of 62', '')
+    """
+    return f"Unfinished: {done} of {asked}" if done < asked or stopped else ""
+
+
+def state(stopped: object) -> str:
+    """Return what a record says of its run: "interrupted" if it was stopped, else "finished"."""
+    return "interrupted" if stopped else "finished"
+
+
 def p_value(p: float, digits: int = 3) -> str:
     """Return a p-value to so many digits; one that is too small for a float is none the less not 0.
 

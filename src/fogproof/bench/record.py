@@ -14,10 +14,11 @@ from fogproof.bench.measuring import WayTime, machine, table
 from fogproof.errors import InvalidInputError
 from fogproof.input_files import read_text
 from fogproof.reports.gallery.plots import render_plot
+from fogproof.text import state, unfinished
 
 SCHEMA = "fogproof/bench/1"
 _PAGE = """\
-# Speed against error
+# {title}
 
 Written by `fogproof bench -o build/bench` (`make bench`) on {processor}, {cores} cores, load {load}, Python {python},
 NumPy {numpy}. Every way of a benchmark runs once in a round, in turn, and times are the processor's; a ratio is the median, over
@@ -26,14 +27,29 @@ ones. The front holds the ways that no other beats in both time and error. Estim
 
 {table}
 
-{missed}
+{goals}
 """
 
 
-def run_record(rows: Iterable[WayTime], started: str, seconds: float) -> dict[str, Any]:
-    """Return the record, ready for JSON."""
+def run_record(
+    rows: Iterable[WayTime], started: str, seconds: float, asked: Iterable[str] = (), stopped: int = 0
+) -> dict[str, Any]:
+    """Return the record, ready for JSON.
+
+    asked    names of the benchmarks that were to be measured; all that have a row by default
+    stopped  the exit code of a run that was interrupted, 0 of one that came to its end
+    """
     ways = [asdict(row) for row in rows]
-    return {"schema": SCHEMA, "started": started, "seconds": round(seconds, 1), "machine": machine(), "ways": ways}
+    done = {way["benchmark"] for way in ways}
+    return {
+        "schema": SCHEMA,
+        "started": started,
+        "seconds": round(seconds, 1),
+        "state": state(stopped),
+        "title": unfinished(len(done), len(set(asked) | done), bool(stopped)),
+        "machine": machine(),
+        "ways": ways,
+    }
 
 
 def write_record(record: Mapping[str, Any], rows: list[WayTime], benchmarks: Iterable[Benchmark], folder: Path) -> Path:
@@ -56,7 +72,6 @@ def write_record(record: Mapping[str, Any], rows: list[WayTime], benchmarks: Ite
 def page(record: Mapping[str, Any], rows: list[WayTime]) -> str:
     """Return the page as Markdown."""
     on = record["machine"]
-    missed = [f"{row.benchmark}, {row.way}" for row in rows if row.met is False]
     return _PAGE.format(
         processor=on["processor"],
         cores=on["cores"],
@@ -65,8 +80,18 @@ def page(record: Mapping[str, Any], rows: list[WayTime]) -> str:
         numpy=on["versions"]["numpy"],
         rounds=min((row.rounds for row in rows), default=0),
         table=table(rows),
-        missed=f"Goals not met: {'; '.join(missed)}." if missed else "Every goal is met.",
+        title=f"{record['title']} benchmarks" if record["title"] else "Speed against error",
+        goals=_goals(rows, record["title"]),
     )
+
+
+def _goals(rows: list[WayTime], unfinished: str) -> str:
+    missed = [f"{row.benchmark}, {row.way}" for row in rows if row.met is False]
+    if missed:
+        return f"Goals not met: {'; '.join(missed)}."
+    if not any(row.met for row in rows):
+        return "No goal was judged."
+    return "Every goal that was judged is met." if unfinished else "Every goal is met."
 
 
 def history(folder: Path) -> list[dict[str, Any]]:

@@ -11,7 +11,7 @@ from typing import Any
 import click
 
 from fogproof.cli.force import FORCE
-from fogproof.cli.signals import code_of, stoppable
+from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
 
 
@@ -56,21 +56,21 @@ def command(names: tuple[str, ...], folder: Path | None, seconds: float, force: 
         earlier = history(folder)
     started, clock = datetime.datetime.now(datetime.UTC), time.perf_counter()
     rows: list[WayTime] = []
-    stopped = 0
-    try:
-        with stoppable():
-            for benchmark in chosen:
-                if missing(benchmark):
-                    say(f"{benchmark.name}: skipped, {benchmark.needs} is not installed", err=True)
-                    continue
-                found = measure(benchmark, seconds)
-                rows += found
-                if not as_json:
-                    say(table(found) if benchmark is chosen[0] else table(found).split("\n", 2)[2])
-    except KeyboardInterrupt as stop:
-        stopped = code_of(stop)
+    asked = [benchmark.name for benchmark in chosen if not missing(benchmark)]
+    with interruptible() as stop:
+        for benchmark in chosen:
+            if missing(benchmark):
+                say(f"{benchmark.name}: skipped, {benchmark.needs} is not installed", err=True)
+                continue
+            found = measure(benchmark, seconds)
+            rows += found
+            if not as_json:
+                say(table(found) if benchmark is chosen[0] else table(found).split("\n", 2)[2])
+    if stop.code:
+        reached = len({row.benchmark for row in rows})
+        say(f"stopped after {reached} of {len(asked)} benchmarks; these are kept", err=True)
     spent = time.perf_counter() - clock
-    record = run_record(rows, started.isoformat(timespec="seconds"), spent)
+    record = run_record(rows, started.isoformat(timespec="seconds"), spent, asked, stop.code)
     if as_json:
         say(json.dumps(record))
     if folder is not None:
@@ -79,4 +79,4 @@ def command(names: tuple[str, ...], folder: Path | None, seconds: float, force: 
         say(f"table: {write_record(record, rows, chosen, folder)}", err=True)
     judged = [row for row in rows if row.met is not None]
     say(f"{len(rows)} ways; {sum(bool(r.met) for r in judged)} of {len(judged)} goals met; {spent:.0f} s", err=True)
-    return stopped
+    return stop.code

@@ -7,7 +7,6 @@ import json
 import click
 
 from fogproof.checks.verdict import jsonable
-from fogproof.cli.signals import stoppable
 from fogproof.cli.terminal import say
 from fogproof.pipe.check import Outcome, Settings, check_file, check_program
 from fogproof.pipe.process import Timeouts
@@ -57,12 +56,11 @@ def command(
     if (file is None) == (program is None):
         raise click.UsageError("give either a FILE of samples or --exec COMMAND")
     settings = Settings(samples, resolution, alpha, seed)
-    with stoppable():
-        if program is not None:
-            outcome = check_program(program, spec, settings, Timeouts(start_timeout, timeout, end_timeout))
-        else:
-            assert file is not None
-            outcome = check_file(file, spec, settings)
+    if program is not None:
+        outcome = check_program(program, spec, settings, Timeouts(start_timeout, timeout, end_timeout))
+    else:
+        assert file is not None
+        outcome = check_file(file, spec, settings)
     _tell(outcome, as_json)
     return _CODES[outcome.verdict.outcome]
 

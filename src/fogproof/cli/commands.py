@@ -16,9 +16,9 @@ from typing import Any, TextIO
 
 import click
 
-from fogproof.cli.signals import code_of
+from fogproof.cli.signals import code_of, stoppable
 from fogproof.cli.terminal import say
-from fogproof.errors import FogproofError
+from fogproof.errors import FogproofError, stop_behind
 from fogproof.text import one_line
 
 _COMMANDS = {
@@ -58,8 +58,14 @@ class _LazyGroup(click.Group):
             return super().make_context(*arguments, **extra)
 
     def invoke(self, ctx: click.Context) -> Any:
-        with _seen_as_unread():
-            return super().invoke(ctx)
+        try:
+            with _seen_as_unread():
+                return super().invoke(ctx)
+        except Exception as error:
+            stop = stop_behind(error)
+            if stop is None:
+                raise
+            raise stop from None
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         with formatter.section("Commands"):
@@ -74,10 +80,19 @@ def cli() -> None:
 
 def main(arguments: list[str] | None = None) -> Any:
     """Run the command line. Every end is a sentence and a code; 1 means that something was rejected, and nothing else."""
-    code = _FAULT
     if sys.stdout is None:
         sys.stdout = _unread()
     warnings.showwarning = _warn
+    with stoppable() as listening:
+        try:
+            code = _run(arguments)
+        except KeyboardInterrupt as stop:  # while the end was told
+            code = code_of(stop)
+        sys.exit(listening.code or code)  # a signal may have waited until everything was written
+
+
+def _run(arguments: list[str] | None) -> int:
+    code = _FAULT
     try:
         code = cli.main(arguments, standalone_mode=False)
         if sys.stdout is not None:
@@ -106,7 +121,7 @@ def main(arguments: list[str] | None = None) -> Any:
         code = _say(f"a fault of fogproof's own, please report it with the command: {what}", _FAULT)
         if os.environ.get("FOGPROOF_DEBUG"):
             traceback.print_exc()
-    sys.exit(code)
+    return code
 
 
 _BAD_INPUT, _FAULT, _UNREAD = 2, 70, 141

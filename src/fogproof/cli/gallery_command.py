@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from fogproof.cli.force import FORCE
+from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
 
 
@@ -34,5 +35,10 @@ def command(pictures: tuple[str, ...], folder: Path, seed: int, force: bool) -> 
     from fogproof.reports import prepare_folder, write_gallery
 
     prepare_folder(folder, ("gallery.html", "gallery.json"), force)
-    say(str(write_gallery(folder, seed, pictures)))
-    return 0
+    with interruptible() as stop:
+        write_gallery(folder, seed, pictures)
+    if (folder / "gallery.html").exists():
+        say(str(folder / "gallery.html"))
+    if stop.code:
+        say("stopped; the pictures that were drawn are kept", err=True)
+    return stop.code

@@ -10,10 +10,10 @@ from typing import Any
 import click
 
 from fogproof.cli.force import FORCE
-from fogproof.cli.signals import code_of, stoppable
+from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
 from fogproof.images.judging import ALPHA, TOLERANCE
-from fogproof.images.relation_run import RelationRun, run_relations, write_record
+from fogproof.images.relation_run import RelationRun, count_relations, run_relations, write_record
 from fogproof.renderers.table import renderer_of
 
 
@@ -84,21 +84,19 @@ def command(
     )  # fmt: skip
     prepare_folder(folder, ("index.html", "results.json"), force)
     rows: list[dict[str, Any]] = []
-    stopped = 0
-    try:
-        with stoppable():
-            for row in run_relations(scenes, run, folder):
-                rows.append(row)
-                say(json.dumps(row) if as_json else _line(row))
-                write_record(rows, run, folder)
-    except KeyboardInterrupt as stop:
-        stopped = code_of(stop)
-        say(f"stopped after {len(rows)} relations; what was rendered is kept", err=True)
-    if only and not rows and not stopped:
+    asked = count_relations(scenes, run, folder)
+    with interruptible() as stop:
+        for row in run_relations(scenes, run, folder):
+            rows.append(row)
+            say(json.dumps(row) if as_json else _line(row))
+            write_record(rows, run, folder, asked, whole=False)
+    if stop.code:
+        say(f"stopped after {len(rows)} of {asked} relations; what was rendered is kept", err=True)
+    if only and not rows and not stop.code:
         raise click.UsageError(f"no relation of these scenes is named {' or '.join(only)}")
-    say(f"report: {write_record(rows, run, folder)}", err=True)
+    say(f"report: {write_record(rows, run, folder, asked, whole=not stop.code)}", err=True)
     outcomes = {row["outcome"] for row in rows}
-    return stopped or (1 if "rejected" in outcomes else 0 if outcomes <= {"not rejected"} else 3)
+    return stop.code or (1 if "rejected" in outcomes else 0 if outcomes <= {"not rejected"} else 3)
 
 
 def _line(row: dict[str, Any]) -> str:

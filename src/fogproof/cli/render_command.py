@@ -10,7 +10,7 @@ from typing import Any
 import click
 
 from fogproof.cli.force import FORCE
-from fogproof.cli.signals import code_of, stoppable
+from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
 from fogproof.images.judging import ALPHA, TOLERANCE
 from fogproof.images.renders import Wanted, render_scenes, write_page
@@ -65,20 +65,17 @@ def command(
     wanted = Wanted(renderer_of(renderer), samples, seed, tolerance, alpha, python, seconds)
     prepare_folder(folder, ("index.html", "results.json"), force)
     rows: list[dict[str, Any]] = []
-    stopped = 0
     width = max(len(path.stem) for path in scenes)
-    try:
-        with stoppable():
-            for row in render_scenes(scenes, wanted, folder):
-                rows.append(row)
-                say(json.dumps(row) if as_json else _line(row, width))
-                write_page(rows, wanted, folder)
-    except KeyboardInterrupt as stop:
-        stopped = code_of(stop)
+    with interruptible() as stop:
+        for row in render_scenes(scenes, wanted, folder):
+            rows.append(row)
+            say(json.dumps(row) if as_json else _line(row, width))
+            write_page(rows, wanted, folder, len(scenes))
+    if stop.code:
         say(f"stopped after {len(rows)} of {len(scenes)} scenes; these are kept", err=True)
-    say(f"report: {write_page(rows, wanted, folder)}", err=True)
+    say(f"report: {write_page(rows, wanted, folder, len(scenes))}", err=True)
     outcomes = {row["outcome"] for row in rows}
-    return stopped or (1 if "rejected" in outcomes else 0 if outcomes <= {"not rejected"} else 3)
+    return stop.code or (1 if "rejected" in outcomes else 0 if outcomes <= {"not rejected"} else 3)
 
 
 def _line(row: dict[str, Any], width: int) -> str:

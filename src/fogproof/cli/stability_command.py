@@ -12,7 +12,7 @@ from pathlib import Path
 import click
 
 from fogproof.cli.force import FORCE
-from fogproof.cli.signals import code_of, stoppable
+from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
 
 
@@ -57,17 +57,14 @@ def command(names: tuple[str, ...], folder: Path | None, brief: bool, force: boo
     width = max(len(formula.name) for formula in chosen)
     if not as_json:
         say(f"{'formula':{width}}  {'form':28}  {'type':7}  {'region':26}  {'worst':>8}  {'bound':>6}  outcome")
-    stopped = 0
-    try:
-        with stoppable():
-            for formula in chosen:
-                rows = measure(formula, points)
-                measured += rows
-                if not as_json:
-                    for row in rows:
-                        say(_row(width, row))
-    except KeyboardInterrupt as stop:
-        stopped = code_of(stop)
+    with interruptible() as stop:
+        for formula in chosen:
+            rows = measure(formula, points)
+            measured += rows
+            if not as_json:
+                for row in rows:
+                    say(_row(width, row))
+    if stop.code:
         reached = len({row.formula for row in measured})
         say(f"stopped after {reached} of {len(chosen)} formulas; these are kept", err=True)
     seconds = time.perf_counter() - clock
@@ -77,6 +74,8 @@ def command(names: tuple[str, ...], folder: Path | None, brief: bool, force: boo
         started=started.isoformat(timespec="seconds"),
         seconds=seconds,
         points=points,
+        asked=len(chosen),
+        stopped=stop.code,
     )
     if as_json:
         say(json.dumps(told))
@@ -96,7 +95,7 @@ def command(names: tuple[str, ...], folder: Path | None, brief: bool, force: boo
     compared = sum(row.points for row in measured)
     done = f"{len({row.formula for row in measured})} of {len(chosen)} formulas"
     say(f"{done}, {compared} comparisons, {len(broken)} bounds broken, {seconds:.1f} s", err=True)
-    return stopped or exit_code(measured)
+    return stop.code or exit_code(measured)
 
 
 def _row(width: int, row: object) -> str:

@@ -11,7 +11,7 @@ from typing import Any
 import click
 
 from fogproof.cli.force import FORCE
-from fogproof.cli.signals import code_of, stoppable
+from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
 from fogproof.text import duration, one_line
 
@@ -67,14 +67,17 @@ def command(
     called = shlex.join(["fogproof", *sys.argv[1:]])
     plan = read_study(study)
     prepare_folder(folder, force=force)
-    try:
-        with stoppable():
-            record = run_study(
-                plan, folder, executor=executor, workers=workers, against=against, salvage=salvage, command=called
-            )
-    except KeyboardInterrupt as stop:
-        say(f"fogproof: stopped; what was drawn is kept, go on with: {called}", err=True)
-        return code_of(stop)
+    with interruptible() as stop:
+        record = run_study(
+            plan, folder, executor=executor, workers=workers, against=against, salvage=salvage, command=called
+        )
+    if stop.code:
+        if not (folder / "results.json").exists():
+            say(f"fogproof: stopped before anything was drawn; start again with: {called}", err=True)
+            return stop.code
+        page = write_report(read_record(folder), folder, keep=True)
+        say(f"fogproof: stopped; what was drawn is kept, go on with: {called}\npage: {page}", err=True)
+        return stop.code
     if as_json:
         say(json.dumps(record))
     else:

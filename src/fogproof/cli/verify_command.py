@@ -14,7 +14,7 @@ import click
 
 from fogproof.checks import fresh_seed
 from fogproof.cli.force import FORCE
-from fogproof.cli.signals import code_of, stoppable
+from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
 from fogproof.errors import InvalidValueError
 from fogproof.text import one_line, p_value
@@ -76,19 +76,16 @@ def command(
     seed = fresh_seed() if seed is None else seed
     started, clock = datetime.datetime.now(datetime.UTC), time.perf_counter()
     results: list[Result] = []
-    stopped = 0
     width = max(len(case.name) for case in chosen)
     if not as_json:
         say(_row(width, "case", "outcome", "smallest p", "resolution", "samples", "seconds"))
-    try:
-        with stoppable(), _progress(len(chosen)) as advance:
-            for result in run(chosen, seed=seed, alpha=alpha, workers=workers, twins=twins, time_limit=time_limit):
-                results.append(result)
-                if not as_json:
-                    advance.print(_describe(width, result))
-                advance(result.case.name)
-    except KeyboardInterrupt as stop:
-        stopped = code_of(stop)
+    with interruptible() as stop, _progress(len(chosen)) as advance:
+        for result in run(chosen, seed=seed, alpha=alpha, workers=workers, twins=twins, time_limit=time_limit):
+            results.append(result)
+            if not as_json:
+                advance.print(_describe(width, result))
+            advance(result.case.name)
+    if stop.code:
         say(f"stopped after {len(results)} of {len(chosen)} cases; these are kept", err=True)
     _explain(results, seed, shares(chosen, alpha))
     if as_json or folder is not None:
@@ -100,7 +97,7 @@ def command(
             started=started.isoformat(timespec="seconds"),
             seconds=time.perf_counter() - clock,
             asked=chosen,
-            stopped=stopped,
+            stopped=stop.code,
         )
         if as_json:
             say(json.dumps(run_record))
@@ -108,7 +105,7 @@ def command(
             from fogproof.reports import write_report
 
             say(f"report: {write_report(run_record, folder)}", err=True)
-    return stopped or exit_code(results)
+    return stop.code or exit_code(results)
 
 
 def _row(width: int, *cells: str) -> str:

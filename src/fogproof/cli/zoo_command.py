@@ -10,7 +10,7 @@ import click
 
 from fogproof.checks import fresh_seed
 from fogproof.cli.force import FORCE
-from fogproof.cli.signals import code_of, stoppable
+from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
 from fogproof.errors import InvalidValueError
 
@@ -83,32 +83,29 @@ def command(
         rows = [row for row in log.read() if row.name in names]
     seed = fresh_seed() if seed is None else seed
     width = max(len(bug.name) for bug in chosen)
-    stopped = 0
     judge = None
     if others:
         from fogproof.zoo.others import p_values
 
         judge = p_values
-    try:
-        with stoppable():
-            for row in run_zoo(
-                chosen, samples=samples, alpha=alpha, seed=seed, workers=workers, others=judge, known=rows
-            ):
-                rows.append(row)
-                if log is not None:
-                    log.add(row)
-                say(json.dumps(asdict(row)) if as_json else line(row, width))
-    except KeyboardInterrupt as stop:
-        stopped = code_of(stop)
-        say(f"stopped after {len(rows)} of {len(chosen)} bugs", err=True)
+    with interruptible() as stop:
+        for row in run_zoo(chosen, samples=samples, alpha=alpha, seed=seed, workers=workers, others=judge, known=rows):
+            rows.append(row)
+            if log is not None:
+                log.add(row)
+            say(json.dumps(asdict(row)) if as_json else line(row, width))
+    if stop.code:
+        say(f"stopped after {len(rows)} of {len(chosen)} bugs; these are kept", err=True)
     order = {bug.name: i for i, bug in enumerate(chosen)}
     rows.sort(key=lambda row: order[row.name])
     if folder is not None:
         from fogproof.zoo.comparison import page
 
         (folder / "zoo.md").write_text(
-            page(rows, samples, alpha, {name: len(bugs_of(name)) for name in {bug.folder for bug in chosen}})
+            page(
+                rows, samples, alpha, {name: len(bugs_of(name)) for name in {bug.folder for bug in chosen}}, len(chosen)
+            )
         )
     say(summary(rows), err=True)
     say(f"{len(rows)} of {len(chosen)} run; seed {seed}", err=True)
-    return stopped or int(not all(count.good for count in counts(rows)))
+    return stop.code or int(not all(count.good for count in counts(rows)))

@@ -16,13 +16,15 @@ import numpy as np
 from fogproof.errors import FogproofError, InvalidInputError, UnsupportedError
 from fogproof.images.battery import Battery, ImageRelation, image_relations, planned
 from fogproof.images.picture import read_picture
-from fogproof.relations import ImageSetting
+from fogproof.relations import Comparison, ImageSetting
 from fogproof.renderers.running import RenderFailure, code_of, render_one
 from fogproof.renderers.table import Renderer
 from fogproof.reports.files import write_file
 from fogproof.reports.pages.images import write_relations_page
+from fogproof.scene import ImageScene
 from fogproof.scene.files import read_image_scene
 from fogproof.scene.to_json import to_json
+from fogproof.text import state, unfinished
 
 
 @dataclass(frozen=True)
@@ -64,21 +66,8 @@ def run_relations(scenes: Sequence[Path], run: RelationRun, folder: Path) -> Ite
             yield _row(path.stem, "", "", "error", str(error))
             continue
         commands = Commands(run, folder / path.stem / "renders")
-        battery = Battery(
-            commands.render,
-            run.integrators,
-            run.renderer.takes("threads"),
-            run.renderer.takes("seed"),
-            run.renders if run.renderer.takes("seed") else 1,
-            tolerance=run.tolerance,
-            alpha=run.alpha / len(scenes),
-            oracle=run.oracle,
-        )
-        wanted = [
-            one
-            for one in planned(scene, battery)
-            if not run.only or any(fnmatch.fnmatchcase(one.name, pattern) for pattern in run.only)
-        ]
+        battery = _battery(commands, run, len(scenes))
+        wanted = _wanted(scene, battery, run)
         started = time.perf_counter()
         try:
             for relation in image_relations(scene, battery, wanted) if wanted else ():
@@ -87,6 +76,39 @@ def run_relations(scenes: Sequence[Path], run: RelationRun, folder: Path) -> Ite
                 yield row
         except RenderError as error:
             yield _row(path.stem, "", "", "error", str(error))
+
+
+def count_relations(scenes: Sequence[Path], run: RelationRun, folder: Path) -> int:
+    """Return how many rows a run will have if its renderer never fails; a scene that cannot be read has one."""
+    count = 0
+    for path in scenes:
+        try:
+            battery = _battery(Commands(run, folder), run, len(scenes))
+            count += len(_wanted(read_image_scene(path), battery, run))
+        except FogproofError:
+            count += 1
+    return count
+
+
+def _battery(commands: Commands, run: RelationRun, scenes: int) -> Battery:
+    return Battery(
+        commands.render,
+        run.integrators,
+        run.renderer.takes("threads"),
+        run.renderer.takes("seed"),
+        run.renders if run.renderer.takes("seed") else 1,
+        tolerance=run.tolerance,
+        alpha=run.alpha / scenes,
+        oracle=run.oracle,
+    )
+
+
+def _wanted(scene: ImageScene, battery: Battery, run: RelationRun) -> list[Comparison]:
+    return [
+        one
+        for one in planned(scene, battery)
+        if not run.only or any(fnmatch.fnmatchcase(one.name, pattern) for pattern in run.only)
+    ]
 
 
 class RenderError(FogproofError):
@@ -135,10 +157,19 @@ class Commands:
         }
 
 
-def write_record(rows: Sequence[dict[str, Any]], run: RelationRun, folder: Path) -> Path:
-    """Write the record of all rows so far and the page; return the page's path."""
+def write_record(
+    rows: Sequence[dict[str, Any]], run: RelationRun, folder: Path, asked: int = 0, whole: bool = True
+) -> Path:
+    """Write the record of all rows so far and the page; return the page's path.
+
+    asked  how many rows there may be
+    whole  whether no more will come: there are fewer than asked where a renderer has failed
+    """
+    title = "" if whole else unfinished(len(rows), max(asked, len(rows)), True)
     record = {
         "format": "fogproof-relations-1",
+        "state": state(title),
+        "title": title,
         "renderer": run.renderer.name,
         "integrators": list(run.integrators),
         "samples": run.samples,
@@ -149,7 +180,7 @@ def write_record(rows: Sequence[dict[str, Any]], run: RelationRun, folder: Path)
         "rows": list(rows),
     }
     write_file(folder / "results.json", json.dumps(record, indent=1))
-    return write_relations_page(rows, run.renderer.name, folder)
+    return write_relations_page(rows, run.renderer.name, folder, title)
 
 
 def _row_of(scene: str, relation: ImageRelation, seconds: float) -> dict[str, Any]:

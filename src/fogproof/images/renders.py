@@ -19,6 +19,7 @@ from fogproof.reports.files import write_file
 from fogproof.reports.pages.images import write_renders_page
 from fogproof.scene.files import read_image_scene
 from fogproof.scene.to_json import to_json
+from fogproof.text import state, unfinished
 
 
 @dataclass(frozen=True)
@@ -70,11 +71,13 @@ def render_scenes(scenes: Sequence[Path], wanted: Wanted, folder: Path) -> Itera
         yield row
 
 
-def write_page(rows: Sequence[dict[str, Any]], wanted: Wanted, folder: Path) -> Path:
-    """Write the page of all rows so far and their record."""
-    record = {"format": "fogproof-renders-1", "renderer": wanted.renderer.name, "rows": list(rows)}
+def write_page(rows: Sequence[dict[str, Any]], wanted: Wanted, folder: Path, asked: int = 0) -> Path:
+    """Write the page of all rows so far and their record; `asked` is how many there will be, as many as there are by default."""
+    title = unfinished(len(rows), asked)
+    record: dict[str, Any] = {"format": "fogproof-renders-1", "renderer": wanted.renderer.name}
+    record |= {"state": state(title), "title": title, "rows": list(rows)}
     write_file(folder / "results.json", json.dumps(record, indent=1))
-    return write_renders_page(rows, wanted.renderer.name, folder)
+    return write_renders_page(rows, wanted.renderer.name, folder, title)
 
 
 def _key(scene: str, wanted: Wanted) -> str:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from fogproof.contracts import Reference
+from fogproof.errors import stop_behind
 from fogproof.stability.exact import ExactValue, exactly, flint
 from fogproof.stability.formula import Evaluate, Formula, HardRegion, Precision
 
@@ -97,6 +98,8 @@ def _measure(formula: Formula, region: HardRegion, precision: Precision, n: int)
     try:
         truths = [_point(formula, row, precision) for row in rows]
     except Exception as error:
+        if stop_behind(error) is not None:
+            raise
         fault = f"no truth: {error}"
     found = []
     for name, source, evaluate, bound in forms:
@@ -128,6 +131,8 @@ def _outcome(
         with np.errstate(all="ignore"):
             answer = evaluate(**{name: values.copy() for name, values in arguments.items()})
     except Exception as error:
+        if stop_behind(error) is not None:
+            raise
         return {"reason": f"{type(error).__name__}: {error}"}
     return _compared(answer, points, rows, bound)
 

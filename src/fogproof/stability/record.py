@@ -15,7 +15,7 @@ from fogproof.errors import InvalidValueError
 from fogproof.stability.formula import Formula
 from fogproof.stability.measuring import OURS, FormError
 from fogproof.stability.table import formulas
-from fogproof.text import spreadsheet_cell
+from fogproof.text import spreadsheet_cell, state, unfinished
 from fogproof.verify import environment
 
 SCHEMA = "fogproof/stability/1"
@@ -48,12 +48,24 @@ def select(names: Iterable[str]) -> list[Formula]:
 
 
 def run_record(
-    measured: Iterable[FormError], *, command: str, started: str, seconds: float, points: int
+    measured: Iterable[FormError],
+    *,
+    command: str,
+    started: str,
+    seconds: float,
+    points: int,
+    asked: int = 0,
+    stopped: int = 0,
 ) -> dict[str, Any]:
-    """Return the JSON-ready record of a run; `points` stood along the axes of most regions."""
+    """Return the JSON-ready record of a run.
+
+    points   so many stood along the axes of most regions
+    asked    formulas that were to be measured; as many as have rows by default
+    stopped  the exit code of a run that was interrupted, 0 of one that came to its end
+    """
     rows = [dataclasses.asdict(row) for row in measured]
-    asked = {row["formula"] for row in rows}
-    told = {one.name: {"title": one.title, "of": one.of, "bound": one.bound} for one in formulas() if one.name in asked}
+    done = {row["formula"] for row in rows}
+    told = {one.name: {"title": one.title, "of": one.of, "bound": one.bound} for one in formulas() if one.name in done}
     table: dict[str, Any] = jsonable(
         {
             "schema": SCHEMA,
@@ -63,6 +75,8 @@ def run_record(
             "started": started,
             "seconds": seconds,
             "points": points,
+            "state": state(stopped),
+            "title": unfinished(len(done), max(asked, len(done)), bool(stopped)),
             "formulas": told,
             "measured": rows,
         }

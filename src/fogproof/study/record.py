@@ -31,7 +31,7 @@ from fogproof.study.plan import Batch, Batches
 from fogproof.study.question import UNITS
 from fogproof.study.ranking import ranked
 from fogproof.study.stored_batches import Store
-from fogproof.text import spreadsheet_cell
+from fogproof.text import spreadsheet_cell, state
 from fogproof.verify import SCHEMA
 
 COLUMNS = (
@@ -90,7 +90,7 @@ def make_record(
             "executor": run.executor,
             "workers": run.workers,
             "exit_code": exit_code(measured, bool(failures), done < len(batches)),
-            "state": "interrupted" if run.interrupted else "finished",
+            "state": state(run.interrupted),
             "fingerprint": study.fingerprint,
             "digest": _digest(scenes),
             "seed": study.seed,

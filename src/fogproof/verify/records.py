@@ -15,6 +15,7 @@ from fogproof.catalogue import Case
 from fogproof.checks.verdict import jsonable
 from fogproof.oracle_error import oracle_errors
 from fogproof.plan import plan, scene_of
+from fogproof.text import state, unfinished
 from fogproof.verify.results import Result, exit_code
 from fogproof.verify.selection import called, shares, whole
 
@@ -58,8 +59,8 @@ def record(
             "started": started,
             "seconds": seconds,
             "exit_code": stopped or exit_code(ordered),
-            "state": "interrupted" if stopped else "finished",
-            "title": f"Unfinished: {len(ordered)} of {len(names)}" if len(ordered) < len(names) else "",
+            "state": state(stopped),
+            "title": unfinished(len(ordered), len(names)),
             "asked": names,
             "oracle": oracle_errors(),
             "cases": [_case_record(result, seed, parts[result.case.origin]) for result in ordered],

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
+from fogproof.text import unfinished
 from fogproof.zoo.matrix import GOALS, ZooCount, counts
 from fogproof.zoo.others import OtherTest, other_tests
 from fogproof.zoo.running import ZooRow
 
 STRICT = 1e-6
 _PAGE = """\
-# Beside other tests
+# {title}
 
 Written by `fogproof zoo --others -o build/zoo` (`make zoo`), which plants known bugs and puts the same subjects to the tests that
 renderers and libraries use. Those are written anew from their descriptions; Mitsuba's own is called.
@@ -51,15 +52,21 @@ a test does not apply).
 """
 
 
-def page(rows: Iterable[ZooRow], samples: int, alpha: float, existing: Mapping[str, int]) -> str:
-    """Return the page as Markdown; `existing` says how many bugs each folder has, run or not."""
+def page(rows: Iterable[ZooRow], samples: int, alpha: float, existing: Mapping[str, int], asked: int = 0) -> str:
+    """Return the page as Markdown.
+
+    existing  how many bugs each folder has, run or not
+    asked     how many bugs were to be run; as many as there are rows by default
+    """
     rows = list(rows)
+    title = unfinished(len(rows), asked)
     return _PAGE.format(
         samples=samples,
         alpha=alpha,
         folders=_folders(counts(rows), existing),
         others=_others(rows),
-        survivors=_survivors(rows),
+        survivors=_survivors(rows) or (f"Nothing yet. {title}." if title else "Nothing."),
+        title=f"{title} bugs were run" if title else "Beside other tests",
         bugs=_bugs([row for row in rows if row.folder in ("field", "errata", "families")]),
     )
 
@@ -139,7 +146,7 @@ def _survivors(rows: list[ZooRow]) -> str:
         if row.status in ("survived", "infeasible", "false-alarm") or (row.status == "inconclusive" and not row.causes)
     ]
     broken = [f"* `{row.name}`: {row.status}, {row.reason}" for row in rows if row.status in ("error", "skipped")]
-    return "\n".join(told + broken) or "Nothing."
+    return "\n".join(told + broken)
 
 
 def _bugs(rows: list[ZooRow]) -> str:
