@@ -9,7 +9,6 @@ from pathlib import Path
 
 from fogproof.errors import InvalidInputError
 
-
 REPORT = ("index.html", "results.json", "results.csv", "junit.xml")
 """What a report writes into its folder, besides figures."""
 
@@ -17,7 +16,10 @@ COMPARISON = ("comparison.html", "before.json", "after.json")
 """What a comparison of two runs adds."""
 
 _HEAD = 65536
-_PAGES = {".html": re.compile(rb" \xe2\x80\x93 fogproof [^<]*</title>"), ".md": re.compile(rb"\nWritten by `fogproof [a-z]+")}
+_PAGES = {
+    ".html": re.compile(rb" \xe2\x80\x93 fogproof [^<]*</title>"),
+    ".md": re.compile(rb"\nWritten by `fogproof [a-z]+"),
+}
 
 
 def prepare_folder(folder: Path, names: tuple[str, ...] = REPORT, force: bool = False) -> None:
