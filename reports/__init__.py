@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from fogproof.errors import InvalidInputError
-from fogproof.reports.files import prepare_folder
+from fogproof.reports.files import COMPARISON, REPORT, prepare_folder
 from fogproof.reports.gallery.pictures import write_gallery
 from fogproof.reports.pages.comparison import exit_code, write_comparison_page
 from fogproof.reports.pages.junit import write_junit
@@ -30,6 +30,8 @@ from fogproof.reports.records.runs import (
 from fogproof.reports.records.studies import as_run, parse_study
 
 __all__ = [
+    "COMPARISON",
+    "REPORT",
     "SCHEMA",
     "compare_exit_code",
     "prepare_folder",

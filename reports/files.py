@@ -1,26 +1,60 @@
-"""Files that are there whole or not at all."""
+"""Files that are there whole or not at all, and never in the place of somebody else's."""
 
 from __future__ import annotations
 
+import json
 import os
+import re
 from pathlib import Path
 
 from fogproof.errors import InvalidInputError
 
+REPORT = ("index.html", "results.json", "results.csv", "junit.xml")
+"""What a report writes into its folder, besides figures."""
 
-def prepare_folder(folder: Path, page: str = "index.html", record: str = "results.json", force: bool = False) -> None:
-    """Make `folder` and see that it can be written, and that no page of somebody else's is replaced.
+COMPARISON = ("comparison.html", "before.json", "after.json")
+"""What a comparison of two runs adds."""
 
-    A page is ours if the record it was made from stands beside it. Better to learn all that before a run than after it.
+_HEAD = 65536
+_PAGES = {
+    ".html": re.compile(rb" \xe2\x80\x93 fogproof [^<]*</title>"),
+    ".md": re.compile(rb"\nWritten by `fogproof [a-z]+"),
+}
 
-    force  replace whatever page is there
+
+def prepare_folder(folder: Path, names: tuple[str, ...] = REPORT, force: bool = False) -> None:
+    """Make `folder` and see that it can be written, and that no file of somebody else's is replaced.
+
+    A page is ours if it says so, a record if its `schema` (`format`) is one of ours. Of what bears no mark, such as a table,
+    the records beside it decide. Better to learn all that before a run than after it.
+
+    names  of the files that will be written there
+    force  replace whatever is there
     """
-    if (folder / page).exists() and not (folder / record).exists() and not force:
-        what = f"{folder / page} was not written by fogproof, for no {record} stands beside it"
-        raise InvalidInputError(f"{what}; choose another folder, or add --force to replace it", str(folder / page))
+    records = [folder / name for name in names if name.endswith(".json")]
+    for path in [] if force else [folder / name for name in names]:
+        marked = path.suffix in _PAGES or path in records
+        if path.exists() and not (_is_ours(path) if marked else any(map(_is_ours, records))):
+            fix = "choose another folder, or add --force to replace it"
+            raise InvalidInputError(f"{path} was not written by fogproof; {fix}", str(path))
     probe = folder / f".probe.{os.getpid()}"
     write_file(probe, b"")
     probe.unlink(missing_ok=True)
+
+
+def _is_ours(path: Path) -> bool:
+    """Whether a file bears our mark; anything that is no file does not."""
+    if not path.is_file():
+        return False
+    try:
+        if path.suffix in _PAGES:
+            with path.open("rb") as page:
+                return _PAGES[path.suffix].search(page.read(_HEAD)) is not None
+        record = json.loads(path.read_bytes())
+    except (OSError, ValueError, RecursionError):
+        return False
+    mark = record.get("schema", record.get("format")) if isinstance(record, dict) else None
+    return isinstance(mark, str) and mark.startswith("fogproof")
 
 
 def write_file(path: Path, content: str | bytes) -> Path:

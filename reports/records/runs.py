@@ -102,6 +102,11 @@ def parse_record(record: Any, origin: str = "record") -> RunRecord:
         if case.name in names:
             raise InvalidInputError(f"{origin}: two cases have the name {shorten(case.name)}", f"cases.{number}.name")
         names.add(case.name)
+        stated = (record["cases"][number].get("verdict") or {}).get("outcome")
+        if case.verdict is not None and stated not in (None, case.verdict.outcome):
+            place = f"cases.{number}.verdict.outcome"
+            said = f"must be {case.verdict.outcome!r}, as its findings are, got {shorten(stated)}"
+            raise InvalidInputError(f"{origin}: {place} {said}", place)
         for index, finding in enumerate(case.verdict.findings if case.verdict is not None else ()):
             if finding.figure is not None:
                 parse_figure(finding.figure, f"{origin}: cases.{number}.verdict.findings.{index}.figure")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
-from fogproof.checks.verdict import Finding, Verdict
+from fogproof.checks.verdict import Finding, Outcome, Verdict
 from fogproof.errors import InvalidInputError, shorten
 from fogproof.plan import Plan
 from fogproof.reports.records.runs import Case, RunRecord, validated
@@ -114,7 +114,7 @@ class StudyEntry:
     points: Literal["random", "sobol"]
     axis: Literal["samples", "steps", "nothing"]
     expected: Literal["not rejected", "rejected"]
-    outcome: str
+    outcome: Outcome
     status: Literal["passed", "known", "rejected", "inconclusive"]
     moments: dict[str, Any]
     counts: tuple[Count, ...]

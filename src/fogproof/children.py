@@ -8,6 +8,7 @@ imports the standard library alone.
 
 from __future__ import annotations
 
+import atexit
 import contextlib
 import os
 import secrets
@@ -21,6 +22,7 @@ from typing import IO, Any
 
 _WORDS = "FOGPROOF_CHILD"  # the words of all who started a program, from the outermost to the program's own
 _LOOKS = 8  # looks for processes that were started while others were killed
+_LAST = 5.0  # seconds for the watcher to end after us
 
 
 @dataclass(frozen=True)
@@ -99,6 +101,13 @@ class _Watcher:
     pipe: IO[bytes]
     popen: subprocess.Popen[bytes]
 
+    def end(self) -> None:
+        """Let it look for the last time, and wait until it has."""
+        if self.owner == os.getpid():
+            self.pipe.close()
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                self.popen.wait(_LAST)
+
 
 _watcher: _Watcher | None = None
 
@@ -121,12 +130,13 @@ def _watched() -> str:
         )
         assert popen.stdin is not None
         _watcher = _Watcher(os.getpid(), word, popen.stdin, popen)
+        atexit.register(_watcher.end)
     return _watcher.word
 
 
 def _tell(line: str) -> None:
     if _watcher is not None and _watcher.owner == os.getpid():
-        with contextlib.suppress(OSError):
+        with contextlib.suppress(OSError, ValueError):
             _watcher.pipe.write(f"{line}\n".encode())
 
 

@@ -149,6 +149,7 @@ def plant(*path, value):
 
 FAULTS = [
     (plant("scenes", 0, "estimators", 0, "status", value="best"), "scenes.0.estimators.0.status"),
+    (plant("scenes", 0, "estimators", 0, "outcome", value="splendid"), "scenes.0.estimators.0.outcome"),
     (plant("scenes", 0, "estimators", 1, "counts", 0, "rmse", value="small"), "scenes.0.estimators.1.counts.0.rmse"),
     (plant("scenes", 0, "estimators", 1, "speed", "counts", value=[]), "must be as many as counts"),
     (plant("scenes", 0, "estimators", 1, "name", value="exact"), "twice"),

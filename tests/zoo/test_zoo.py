@@ -107,6 +107,9 @@ def test_a_stopped_run_goes_on_and_other_settings_are_refused(tmp_path):
     assert list(run_zoo([bug(np.exp)], samples=1000, alpha=1e-6, seed=1, workers=1, known=[row])) == []
     with pytest.raises(InvalidInputError, match="other settings"):
         ZooLog(log.path, {"samples": 1}).read()
+    log.path.write_text(log.path.read_text().replace(row.status, "splendid"))
+    with pytest.raises(InvalidInputError, match="'splendid' is none of killed"):
+        log.read()
     log.path.write_text("{}\n{broken")
     with pytest.raises(InvalidInputError, match="holds no rows"):
         log.read()

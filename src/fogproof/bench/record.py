@@ -11,6 +11,8 @@ from typing import Any
 from fogproof.bench.benchmark import Benchmark
 from fogproof.bench.figure import TimeErrorPlane, drawable
 from fogproof.bench.measuring import WayTime, machine, table
+from fogproof.errors import InvalidInputError
+from fogproof.input_files import read_text
 from fogproof.reports.gallery.plots import render_plot
 from fogproof.text import state, unfinished
 
@@ -95,7 +97,19 @@ def _goals(rows: list[WayTime], unfinished: str) -> str:
 def history(folder: Path) -> list[dict[str, Any]]:
     """Return the records of earlier runs in a folder, oldest first."""
     path = folder / "bench.jsonl"
-    return [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
+    if not path.exists():
+        return []
+    records: list[dict[str, Any]] = []
+    for number, line in enumerate(read_text(path, "the history").splitlines(), start=1):
+        try:
+            record = json.loads(line)
+        except (ValueError, RecursionError):
+            record = None
+        if not isinstance(record, dict) or record.get("schema") != SCHEMA:
+            what = f"{path}, line {number}, is not a record of {SCHEMA}"
+            raise InvalidInputError(f"{what}; choose another folder, or move the file away", str(path))
+        records.append(record)
+    return records
 
 
 def changes(rows: Iterable[WayTime], before: Mapping[str, Any]) -> list[str]:

@@ -6,9 +6,11 @@ import datetime
 import json
 import time
 from pathlib import Path
+from typing import Any
 
 import click
 
+from fogproof.cli.force import FORCE
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
 
@@ -30,8 +32,9 @@ from fogproof.cli.terminal import say
     show_default=True,
     help="For each benchmark, by the clock.",
 )
+@FORCE
 @click.option("--json", "as_json", is_flag=True, help="Print the record as JSON instead of the table.")
-def command(names: tuple[str, ...], folder: Path | None, seconds: float, as_json: bool) -> int:
+def command(names: tuple[str, ...], folder: Path | None, seconds: float, force: bool, as_json: bool) -> int:
     """Measure speed against error: every way to a number in turn, as ratios of the processor's time.
 
     BENCHMARK is a name or a glob; without any, all are measured, in less than five minutes. A ratio is that of a way to the
@@ -45,6 +48,12 @@ def command(names: tuple[str, ...], folder: Path | None, seconds: float, as_json
     from fogproof.bench.record import changes, history, run_record, write_record
 
     chosen = select(names)
+    earlier: list[dict[str, Any]] = []
+    if folder is not None:
+        from fogproof.reports import prepare_folder
+
+        prepare_folder(folder, ("bench.json", "bench.md"), force)
+        earlier = history(folder)
     started, clock = datetime.datetime.now(datetime.UTC), time.perf_counter()
     rows: list[WayTime] = []
     asked = [benchmark.name for benchmark in chosen if not missing(benchmark)]
@@ -65,7 +74,6 @@ def command(names: tuple[str, ...], folder: Path | None, seconds: float, as_json
     if as_json:
         say(json.dumps(record))
     if folder is not None:
-        earlier = history(folder)
         for change in changes(rows, earlier[-1]) if earlier else ():
             say(f"changed since {earlier[-1]['started']}: {change}", err=True)
         say(f"table: {write_record(record, rows, chosen, folder)}", err=True)

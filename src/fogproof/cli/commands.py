@@ -10,8 +10,9 @@ import os
 import sys
 import traceback
 import warnings
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 import click
 
@@ -52,11 +53,14 @@ class _LazyGroup(click.Group):
         command: click.Command = importlib.import_module(f"fogproof.cli.{name}_command").command
         return command
 
+    def make_context(self, *arguments: Any, **extra: Any) -> click.Context:
+        with _seen_as_unread():  # --help and --version print from here
+            return super().make_context(*arguments, **extra)
+
     def invoke(self, ctx: click.Context) -> Any:
         try:
-            return super().invoke(ctx)
-        except BrokenPipeError:  # click would end with 1, which here means that something was rejected
-            raise click.exceptions.Exit(_nobody_reads()) from None
+            with _seen_as_unread():
+                return super().invoke(ctx)
         except Exception as error:
             stop = stop_behind(error)
             if stop is None:
@@ -76,6 +80,8 @@ def cli() -> None:
 
 def main(arguments: list[str] | None = None) -> Any:
     """Run the command line. Every end is a sentence and a code; 1 means that something was rejected, and nothing else."""
+    if sys.stdout is None:
+        sys.stdout = _unread()
     warnings.showwarning = _warn
     with stoppable() as listening:
         try:
@@ -137,6 +143,22 @@ def _warn(
 ) -> None:
     """Tell a warning that somebody's file raises as a sentence: whatever it holds cannot move the cursor."""
     _say(f"{Path(filename).name}, line {lineno}: {category.__name__}: {one_line(str(message))}", 0)
+
+
+@contextlib.contextmanager
+def _seen_as_unread() -> Iterator[None]:
+    """End with our code where nobody reads: click would end with 1, which here means that something was rejected."""
+    try:
+        yield
+    except BrokenPipeError:
+        raise click.exceptions.Exit(_nobody_reads()) from None
+
+
+def _unread() -> TextIO:
+    """Return what stands for a stdout that was closed before the start: a pipe that nobody reads."""
+    reading, writing = os.pipe()
+    os.close(reading)
+    return open(writing, "w", encoding="utf-8")
 
 
 def _nobody_reads() -> int:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from fogproof.cli.force import FORCE
 from fogproof.cli.terminal import say
 from fogproof.images.compare import compare_image
 from fogproof.images.judging import ALPHA, TOLERANCE, ImageComparison
@@ -40,7 +41,7 @@ SCENES = (".toml", ".json")
     type=click.Path(path_type=Path, file_okay=False),
     help="Write the page, maps and results here.",
 )
-@click.option("--force", is_flag=True, help="Replace a page in the report's folder that fogproof did not write.")
+@FORCE
 @click.option("--json", "as_json", is_flag=True, help="Print the record as JSON instead of words.")
 def command(
     images: tuple[str, ...],
@@ -67,7 +68,7 @@ def command(
     if folder is not None:
         from fogproof.reports import prepare_folder
 
-        prepare_folder(folder, force=force)
+        prepare_folder(folder, ("index.html", "results.json", "maps.exr", "maps.npy"), force)
     if scene_file is None:
         if not others:
             raise click.UsageError("give a SCENE.toml after the images, or --with IMAGE to compare with")

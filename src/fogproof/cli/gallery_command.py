@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from fogproof.cli.force import FORCE
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
 
@@ -22,7 +23,7 @@ from fogproof.cli.terminal import say
     help="Write the page and the pictures here.",
 )
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of everything sampled.")
-@click.option("--force", is_flag=True, help="Replace a gallery.html that fogproof did not write.")
+@FORCE
 def command(pictures: tuple[str, ...], folder: Path, seed: int, force: bool) -> int:
     """Draw the theory's pictures: the oracle's curves, and behind them what the estimators sample.
 
@@ -33,7 +34,7 @@ def command(pictures: tuple[str, ...], folder: Path, seed: int, force: bool) -> 
     """
     from fogproof.reports import prepare_folder, write_gallery
 
-    prepare_folder(folder, "gallery.html", "gallery.json", force)
+    prepare_folder(folder, ("gallery.html", "gallery.json"), force)
     with interruptible() as stop:
         write_gallery(folder, seed, pictures)
     if (folder / "gallery.html").exists():

@@ -9,6 +9,7 @@ from typing import Any
 
 import click
 
+from fogproof.cli.terminal import requests_on_stdin
 from fogproof.errors import FogproofError, InvalidInputError
 from fogproof.golden import golden_entries, to_c, to_csv, to_json_document, to_npz
 from fogproof.input_files import read_requests
@@ -51,7 +52,7 @@ def command(quantities: tuple[str, ...], kind: str, requests: str | None, output
 def _read(path: str) -> list[dict[str, Any]]:
     """Return the requests of a file of JSON lines; a bad one is named with its line."""
     try:
-        content = sys.stdin.buffer.read() if path == "-" else read_requests(path)
+        content = requests_on_stdin().read() if path == "-" else read_requests(path)
         lines = content.decode("utf-8-sig").split("\n")
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "it is not UTF-8 text"

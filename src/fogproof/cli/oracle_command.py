@@ -11,8 +11,7 @@ from pathlib import Path
 
 import click
 
-from fogproof.cli.terminal import say
-from fogproof.errors import InvalidInputError
+from fogproof.cli.terminal import requests_on_stdin, say
 from fogproof.input_files import read_requests
 from fogproof.oracle import Limits, schema, serve
 from fogproof.quantities import quantities
@@ -91,9 +90,7 @@ def _image(scene_file: str, output: Path) -> int:
 
 
 def _stdin() -> Callable[[int], bytes]:
-    if sys.stdin is None:
-        raise InvalidInputError("stdin is closed; give requests on it, or in a file")
-    stdin = sys.stdin.buffer
+    stdin = requests_on_stdin()
     return stdin.read1 if isinstance(stdin, io.BufferedReader) else stdin.read
 
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import click
 
+from fogproof.cli.force import FORCE
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
 from fogproof.images.judging import ALPHA, TOLERANCE
@@ -45,7 +46,7 @@ from fogproof.renderers.table import renderer_of
 @click.option(
     "--time-limit", "seconds", type=float, default=600.0, show_default=True, help="Longest a render may take [s]."
 )
-@click.option("--force", is_flag=True, help="Replace a page in DIR that fogproof did not write.")
+@FORCE
 @click.option("--json", "as_json", is_flag=True, help="Print rows as JSON, one a line.")
 def command(
     scenes: tuple[Path, ...],
@@ -81,7 +82,7 @@ def command(
     run = RelationRun(
         chosen, ways, samples, renders, seed, tolerance, alpha, python, only, not no_oracle, seconds
     )  # fmt: skip
-    prepare_folder(folder, force=force)
+    prepare_folder(folder, ("index.html", "results.json"), force)
     rows: list[dict[str, Any]] = []
     asked = count_relations(scenes, run, folder)
     with interruptible() as stop:

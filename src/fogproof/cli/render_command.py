@@ -9,6 +9,7 @@ from typing import Any
 
 import click
 
+from fogproof.cli.force import FORCE
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
 from fogproof.images.judging import ALPHA, TOLERANCE
@@ -37,7 +38,7 @@ from fogproof.renderers.table import renderer_of
 )
 @click.option("--alpha", type=float, default=ALPHA, show_default=True, help="False-alarm probability of each scene.")
 @click.option("--time-limit", "seconds", type=float, metavar="SECONDS", help="Longest a render may take.")
-@click.option("--force", is_flag=True, help="Replace a page in DIR that fogproof did not write.")
+@FORCE
 @click.option("--json", "as_json", is_flag=True, help="Print rows as JSON, one a line.")
 def command(
     scenes: tuple[Path, ...],
@@ -62,7 +63,7 @@ def command(
     from fogproof.reports import prepare_folder
 
     wanted = Wanted(renderer_of(renderer), samples, seed, tolerance, alpha, python, seconds)
-    prepare_folder(folder, force=force)
+    prepare_folder(folder, ("index.html", "results.json"), force)
     rows: list[dict[str, Any]] = []
     width = max(len(path.stem) for path in scenes)
     with interruptible() as stop:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from fogproof.cli.force import FORCE
 from fogproof.cli.terminal import say
 
 
@@ -18,7 +19,8 @@ from fogproof.cli.terminal import say
     type=click.Path(path_type=Path),
     help="Compare with an older run's folder as well: what came out worse, what was mended.",
 )
-def command(folder: Path, older: Path | None) -> int:
+@FORCE
+def command(folder: Path, older: Path | None, force: bool) -> int:
     """Make the page of a run again from the results.json in DIR, and print its path.
 
     With --against, print the path of DIR/comparison.html instead; its exit code is 1 if something came out worse, 3 if
@@ -28,11 +30,20 @@ def command(folder: Path, older: Path | None) -> int:
     Examples:  fogproof report build/report
                fogproof report build/report --against last-week
     """
-    from fogproof.reports import compare_exit_code, read_record, write_comparison, write_report
+    from fogproof.reports import (
+        COMPARISON,
+        REPORT,
+        compare_exit_code,
+        prepare_folder,
+        read_record,
+        write_comparison,
+        write_report,
+    )
 
     record = read_record(folder)
     before = read_record(older) if older else None
     code = 0 if before is None else compare_exit_code(before, record)
+    prepare_folder(folder, REPORT if before is None else (*REPORT, *COMPARISON), force)
     page = write_report(record, folder, keep=True)
     if before is not None:
         page = write_comparison(before, record, folder)

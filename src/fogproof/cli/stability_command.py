@@ -11,6 +11,7 @@ from pathlib import Path
 
 import click
 
+from fogproof.cli.force import FORCE
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
 
@@ -28,7 +29,7 @@ from fogproof.cli.terminal import say
 @click.option(
     "--short", "brief", is_flag=True, help="Fewer points, and no truth that takes long: seconds, not a minute."
 )
-@click.option("--force", is_flag=True, help="Replace a stability.html that fogproof did not write.")
+@FORCE
 @click.option("--json", "as_json", is_flag=True, help="Print the record as JSON instead of rows.")
 def command(names: tuple[str, ...], folder: Path | None, brief: bool, force: bool, as_json: bool) -> int:
     """Measure formulas and samplers against 50-digit truth in regions where floating point fails.
@@ -49,7 +50,7 @@ def command(names: tuple[str, ...], folder: Path | None, brief: bool, force: boo
     if folder is not None:
         from fogproof.reports import prepare_folder
 
-        prepare_folder(folder, "stability.html", "stability.json", force)
+        prepare_folder(folder, ("stability.html", "stability.json", "stability.csv"), force)
     started, clock = datetime.datetime.now(datetime.UTC), time.perf_counter()
     points = POINTS_SHORT if brief else POINTS
     measured: list[FormError] = []

@@ -10,6 +10,7 @@ from typing import Any
 
 import click
 
+from fogproof.cli.force import FORCE
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
 from fogproof.text import duration, one_line
@@ -41,9 +42,17 @@ from fogproof.text import duration, one_line
     help="Earlier run to compare with: what became slower, noisier or biased, beyond noise.",
 )
 @click.option("--salvage", is_flag=True, help="Put a damaged store aside and go on with what can be read of it.")
+@FORCE
 @click.option("--json", "as_json", is_flag=True, help="Print the record of the run as JSON instead of rows.")
 def command(
-    study: Path, folder: Path, executor: str, workers: int | None, against: Path | None, salvage: bool, as_json: bool
+    study: Path,
+    folder: Path,
+    executor: str,
+    workers: int | None,
+    against: Path | None,
+    salvage: bool,
+    force: bool,
+    as_json: bool,
 ) -> int:
     """Measure speed against error, and judge bias and variance by the oracle.
 
@@ -52,11 +61,12 @@ def command(
     \b
     Example:  fogproof study studies/lecture.toml -o runs/lecture
     """
-    from fogproof.reports import read_record, write_report
+    from fogproof.reports import prepare_folder, read_record, write_report
     from fogproof.study import read_study, run_study
 
     called = shlex.join(["fogproof", *sys.argv[1:]])
     plan = read_study(study)
+    prepare_folder(folder, force=force)
     with interruptible() as stop:
         record = run_study(
             plan, folder, executor=executor, workers=workers, against=against, salvage=salvage, command=called

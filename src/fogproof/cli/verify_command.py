@@ -13,6 +13,7 @@ from pathlib import Path
 import click
 
 from fogproof.checks import fresh_seed
+from fogproof.cli.force import FORCE
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
 from fogproof.errors import InvalidValueError
@@ -41,7 +42,7 @@ from fogproof.verify import ALPHA, Result, exit_code, record, reproduce, run, se
 @click.option(
     "--time-limit", type=float, metavar="SECONDS", help="Longest a case may take; one that takes longer is an error."
 )
-@click.option("--force", is_flag=True, help="Replace a page in the report's folder that fogproof did not write.")
+@FORCE
 @click.option("--json", "as_json", is_flag=True, help="Print the record of the run as JSON instead of rows.")
 def command(
     cases: tuple[str, ...],

@@ -9,6 +9,7 @@ from pathlib import Path
 import click
 
 from fogproof.checks import fresh_seed
+from fogproof.cli.force import FORCE
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
 from fogproof.errors import InvalidValueError
@@ -40,6 +41,7 @@ from fogproof.errors import InvalidValueError
     show_default=True,
     help="Of outsiders, mutants and right ones: how many are run.",
 )
+@FORCE
 @click.option("--json", "as_json", is_flag=True, help="Print rows as lines of JSON.")
 def command(
     bugs: tuple[str, ...],
@@ -50,6 +52,7 @@ def command(
     workers: int,
     others: bool,
     one_in: int,
+    force: bool,
     as_json: bool,
 ) -> int:
     """Run known bugs against the checks: which are killed, by what, with how many samples, and is the cause named rightly?
@@ -71,6 +74,9 @@ def command(
     chosen = select(bugs, one_in)
     log, rows = None, []
     if folder is not None:
+        from fogproof.reports import prepare_folder
+
+        prepare_folder(folder, ("zoo.md",), force)
         settings = {"samples": samples, "alpha": alpha, "others": others}
         log = ZooLog(folder / "zoo.jsonl", settings)
         names = {bug.name for bug in chosen}

@@ -74,7 +74,8 @@ def render_scenes(scenes: Sequence[Path], wanted: Wanted, folder: Path) -> Itera
 def write_page(rows: Sequence[dict[str, Any]], wanted: Wanted, folder: Path, asked: int = 0) -> Path:
     """Write the page of all rows so far and their record; `asked` is how many there will be, as many as there are by default."""
     title = unfinished(len(rows), asked)
-    record = {"renderer": wanted.renderer.name, "state": state(title), "title": title, "rows": list(rows)}
+    record: dict[str, Any] = {"format": "fogproof-renders-1", "renderer": wanted.renderer.name}
+    record |= {"state": state(title), "title": title, "rows": list(rows)}
     write_file(folder / "results.json", json.dumps(record, indent=1))
     return write_renders_page(rows, wanted.renderer.name, folder, title)
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 
@@ -152,6 +152,8 @@ class ZooLog:
         try:
             first, *rest = [json.loads(line) for line in self.path.read_text().splitlines()]
             rows = [ZooRow(**{**row, "causes": tuple(row["causes"]), "checks": tuple(row["checks"])}) for row in rest]
+            if strange := [row.status for row in rows if row.status not in get_args(Status)]:
+                raise ValueError(f"{strange[0]!r} is none of {', '.join(get_args(Status))}")
         except (ValueError, TypeError, KeyError) as error:
             raise InvalidInputError(f"{self.path} holds no rows of a zoo: {error}; delete it", str(self.path)) from None
         if first != self.settings:
