@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import contextlib
 import os
-import secrets
 import select
 import shlex
 import signal
@@ -18,12 +17,11 @@ import time
 from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
-from pathlib import Path
 
+from fogproof.children import start
 from fogproof.errors import InvalidInputError, InvalidValueError, SubjectError, UnsupportedError
 from fogproof.text import one_line
 
-_MARK = "FOGPROOF_CHILD"  # the word in the environment
 _KEPT = 2000  # bytes of stderr, at its beginning and at its end
 _CHUNK = 1 << 16
 _PIPE = 1 << 20  # bytes that a pipe may hold, where the system lets us choose
@@ -64,20 +62,14 @@ class Process:
         self.words = _words(command)
         self.timeouts = timeouts
         self.answers = 0
-        self._mark = secrets.token_hex(16)
         try:
-            self._popen = subprocess.Popen(
-                self.words,
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.PIPE,
-                bufsize=0,
-                start_new_session=True,
-                env={**os.environ, _MARK: self._mark},
+            self._child = start(
+                self.words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, bufsize=0
             )
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or str(error)
             raise InvalidInputError(f"cannot start {self.words[0]!r}: {reason}", "--exec") from None
+        self._popen = self._child.popen
         streams = self._popen.stdin, self._popen.stdout, self._popen.stderr
         self._in, self._out, self._err = (stream.fileno() for stream in streams if stream is not None)
         self._open = {self._in, self._out, self._err}
@@ -176,7 +168,7 @@ class Process:
                         extra += len(self._read(_CHUNK))
         finally:
             code = self._popen.poll()
-            self._kill()
+            self._child.kill()
         while self._out in self._open and (rest := self._read(_CHUNK)):
             extra += len(rest)
         self._listen()
@@ -188,17 +180,6 @@ class Process:
             self.note = f"it did not end within {self.timeouts.end:g} s of the end of its input, and was killed"
         elif code and before is None:
             self.note = f"it {_end_of(code)} after the end of its input"
-
-    def _kill(self) -> None:
-        for pid in _marked(self._mark):
-            with contextlib.suppress(OSError):
-                os.kill(pid, signal.SIGKILL)
-        with contextlib.suppress(OSError):
-            os.killpg(self._popen.pid, signal.SIGKILL)
-        self._popen.wait()
-        for pid in _marked(self._mark):  # started between the first look and the end of their parent
-            with contextlib.suppress(OSError):
-                os.kill(pid, signal.SIGKILL)
 
     def _some(self, deadline: float, seconds: float, awaited: str, most: int) -> bytes:
         while True:
@@ -315,13 +296,3 @@ def _widen(pipe: int) -> None:
         import fcntl
 
         fcntl.fcntl(pipe, _SETPIPE, _PIPE)
-
-
-def _marked(mark: str) -> list[int]:
-    """Return the processes whose environment holds the mark; none where the system does not show them."""
-    wanted, found = f"{_MARK}={mark}".encode(), []
-    for entry in Path("/proc").glob("[0-9]*/environ"):
-        with contextlib.suppress(OSError):
-            if wanted in entry.read_bytes():
-                found.append(int(entry.parent.name))
-    return found

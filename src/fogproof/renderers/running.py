@@ -7,6 +7,7 @@ import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
+from fogproof.children import run
 from fogproof.renderers.table import Renderer, command_of
 
 LAST = 300
@@ -36,7 +37,7 @@ def render_one(
         old.unlink(missing_ok=True)
     command = command_of(renderer, {"scene": str(scene), "out": str(out), **values})
     try:
-        ran = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=seconds, check=False)
+        ran = run(command, seconds)
     except subprocess.TimeoutExpired:
         return RenderFailure(f"rendering took longer than {seconds:g} s")
     except OSError as error:
