@@ -34,7 +34,7 @@ def prepare_folder(folder: Path, names: tuple[str, ...] = REPORT, force: bool = 
     records = [folder / name for name in names if name.endswith(".json")]
     for path in [] if force else [folder / name for name in names]:
         marked = path.suffix in _PAGES or path in records
-        if path.exists() and not (_is_ours(path) if marked else any(map(_is_ours, records))):
+        if os.path.lexists(path) and not (_is_ours(path) if marked else any(map(_is_ours, records))):
             fix = "choose another folder, or add --force to replace it"
             raise InvalidInputError(f"{path} was not written by fogproof; {fix}", str(path))
     probe = folder / f".probe.{os.getpid()}"

@@ -87,6 +87,10 @@ def test_a_report_of_ours_is_replaced_and_each_file_is_looked_at(tmp_path):
         prepare_folder(tmp_path)
     for name in REPORT[:2]:
         (tmp_path / name).unlink()
+        (tmp_path / name).symlink_to("nowhere")
+        with pytest.raises(InvalidInputError, match=rf"{name} was not written by fogproof"):
+            prepare_folder(tmp_path)
+        (tmp_path / name).unlink()
     with pytest.raises(InvalidInputError, match=r"results\.csv was not written by fogproof"):
         prepare_folder(tmp_path)  # nothing is left that says whose it is
 

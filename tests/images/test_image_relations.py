@@ -16,6 +16,7 @@ from fogproof.errors import FogproofError, UnsupportedError
 from fogproof.images.battery import Battery, image_relations, planned
 from fogproof.relations import IMAGE_RELATIONS, ImageSetting, comparisons
 from fogproof.relations.moved import brightened, changed, mirrored, scaled, translated, turned
+from fogproof.reports import prepare_folder
 from fogproof.scene import (
     Film,
     HenyeyGreenstein,
@@ -354,6 +355,7 @@ def test_a_command_that_is_right_keeps_what_it_can_render(tmp_path):
     record = json.loads((tmp_path / "results.json").read_text())
     assert [row["relation"] for row in record["rows"]] == ["moved/500", "mirrored"]
     assert "mirrored" in (tmp_path / "index.html").read_text()
+    prepare_folder(tmp_path, ("index.html", "results.json"))  # it is seen to be ours
 
 
 def test_a_command_with_a_fault_fails_by_the_right_relation_and_is_taken_up_again(tmp_path):

@@ -99,6 +99,9 @@ def test_renders_of_ones_own_are_judged_kept_and_told(tmp_path):
     first = (folder / "wall" / "row.json").stat().st_mtime_ns
     assert run("render", tmp_path / "wall.toml", "--with", command, "-o", folder).return_value == 0
     assert (folder / "wall" / "row.json").stat().st_mtime_ns == first
+    row = folder / "wall" / "row.json"
+    row.write_text(row.read_text().replace("not rejected", "splendid"))
+    assert run("render", tmp_path / "wall.toml", "--with", command, "-o", folder).return_value == 0
     wrong = command.removesuffix(" 1") + " 1.01"
     assert run("render", tmp_path / "wall.toml", "--with", wrong, "-o", folder).return_value == 1
     assert "wall" in (folder / "index.html").read_text()

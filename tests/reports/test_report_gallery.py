@@ -11,7 +11,7 @@ import pytest
 from report_records import Page
 
 from fogproof.errors import NotInstalledError
-from fogproof.reports import write_gallery
+from fogproof.reports import prepare_folder, write_gallery
 from fogproof.reports.gallery import pictures as gallery
 from fogproof.reports.gallery.plots import render_plot
 from fogproof.reports.gallery.sky import SkyAndSunset
@@ -33,6 +33,7 @@ def test_picture_is_png_and_svg(page, name):
 
 def test_page_stands_alone_and_says_what_it_shows(page):
     read = Page(page)
+    prepare_folder(page.parent, ("gallery.html", "gallery.json"))  # it is seen to be ours
     assert len(read.all("figure")) == len(NAMES)
     assert all(len(it["aria-label"]) > 60 for it in read.all("div") if it.get("role") == "img")
     ids_of = [set(re.findall(r' id="([^"]+)"', svg)) for svg in re.findall(r"<svg.*?</svg>", read.html, re.S)]

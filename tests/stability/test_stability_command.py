@@ -9,7 +9,7 @@ from report_records import Page
 
 from fogproof.cli.commands import cli
 from fogproof.errors import InvalidInputError
-from fogproof.reports import write_stability
+from fogproof.reports import prepare_folder, write_stability
 from fogproof.reports.records.stability import parse_stability, stability_beside
 from fogproof.stability import measuring
 
@@ -47,6 +47,7 @@ def test_page_shows_maps_and_stands_alone(run):
     folder, _ = run
     page = Page(folder / "stability.html")
     assert "No bound of" in page.html
+    prepare_folder(folder, ("stability.html", "stability.json", "stability.csv"))  # it is seen to be ours
     assert "http://" not in page.html.replace("http://www.w3.org", "")
     maps = [it for it in page.all("div") if it.get("role") == "img"]
     assert maps

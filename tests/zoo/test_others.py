@@ -5,6 +5,7 @@ import pytest
 from scipy.stats import chi2
 
 from fogproof.domains import Interval, UnitSphere
+from fogproof.reports import prepare_folder
 from fogproof.zoo.bug import Planted
 from fogproof.zoo.comparison import page
 from fogproof.zoo.laws import directions, even, hg
@@ -48,7 +49,7 @@ def test_what_is_no_sampler_is_not_asked():
     assert set(p_values(object(), 1).values()) == {None}
 
 
-def test_the_page_counts_kills_and_false_alarms_of_each_test():
+def test_the_page_counts_kills_and_false_alarms_of_each_test(tmp_path):
     def row(name, status, p, causes=("shape",)):
         return ZooRow(
             name,
@@ -64,6 +65,8 @@ def test_the_page_counts_kills_and_false_alarms_of_each_test():
 
     rows = [row("field/a", "killed", 1e-4), row("field/b", "survived", 0.5), row("right/c", "passed", 1e-9, ())]
     text = page(rows, 1_000_000, 1e-6, {"field": 3, "right": 4})
+    (tmp_path / "zoo.md").write_text(text)
+    prepare_folder(tmp_path, ("zoo.md",))  # it is seen to be ours
     nori = next(line for line in text.splitlines() if line.startswith("| Nori"))
     assert [cell.strip() for cell in nori.split("|")[4:-1]] == ["1 of 2", "0", "1", "1 of 1", "1", "0"]
     assert "`field/b` (field/b): survived" in text

@@ -87,11 +87,14 @@ def _key(scene: str, wanted: Wanted) -> str:
     return hashlib.blake2b(b"\0".join(parts), digest_size=16).hexdigest()
 
 
+_KEPT = ("not rejected", "rejected", "inconclusive", "not rendered")
+
+
 def _before(place: Path, key: str) -> dict[str, Any] | None:
     try:
         kept = json.loads((place / "row.json").read_text(encoding="utf-8"))
         row: dict[str, Any] = kept["row"]
-        return row if kept["key"] == key and row["outcome"] != "error" else None  # what went wrong may go well now
+        return row if kept["key"] == key and row["outcome"] in _KEPT else None  # what went wrong may go well now
     except (OSError, ValueError, KeyError, TypeError):
         return None
 
