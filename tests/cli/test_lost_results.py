@@ -96,7 +96,7 @@ def test_a_report_of_ours_is_replaced_and_each_file_is_looked_at(tmp_path):
 
 
 @CLOSED
-@pytest.mark.parametrize("words", ["oracle --list", "oracle -", "--help"])
+@pytest.mark.parametrize("words", ["oracle -", "--help"])
 def test_a_closed_stdout_is_one_that_nobody_reads(words):
     request = json.dumps({"quantity": "phase_pdf", "phase": {"kind": "rayleigh"}, "mu": 0.5}).encode()
     command = f"{shlex.quote(sys.executable)} -m fogproof {words} >&-"
