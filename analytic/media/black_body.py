@@ -39,7 +39,7 @@ def black_body_radiance(temperature: FloatArray, wavelength: FloatArray) -> Refe
     require("wavelength", length, np.isfinite(length) & (length > 0), "must be finite and > 0 [m]")
     value, x = planck(T, length)
     with np.errstate(over="ignore", invalid="ignore", under="ignore"):
-        error = np.where(value > 0, (ELEMENTARY + 32 * EPS + 4 * EPS * np.minimum(x, 800.0)) * value, 0.0) + TINY
+        error = np.where(value > 0, (ELEMENTARY + 32 * EPS + 4 * EPS * np.minimum(x, 1600.0)) * value, 0.0) + 2 * TINY
     return Reference(value, error, "Planck's law", "Planck 1900")
 
 
@@ -47,6 +47,9 @@ def planck(T: np.ndarray, length: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the radiance and h c/(lambda k T)."""
     with np.errstate(divide="ignore", over="ignore", invalid="ignore", under="ignore"):
         x = np.where(T > 0, SECOND / (length * np.maximum(T, 1e-300)), np.inf)
-        front = 2e-9 * PLANCK * LIGHT * LIGHT / length**5
-        value = np.where(x < 700, front / np.expm1(np.minimum(x, 700.0)), front * np.exp(-x))
+        half = np.exp(-0.5 * x)  # exp(-x) itself would be too small for a float where the radiance is not
+        front = 2e-9 * LIGHT * BOLTZMANN * T / length**2 / length**2
+        small = np.minimum(x, 700.0)
+        value = np.where(x < 700, front * np.where(small > 0, small / np.expm1(small), 1.0), front * x * half * half)
+    value = np.where(half > 0, value, 0.0)
     return np.where(T > 0, value, 0.0), x

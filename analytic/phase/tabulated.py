@@ -25,8 +25,9 @@ def _table(phase: Tabulated) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]
 def _interpolate(c: np.ndarray, f: np.ndarray, mu: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the cell of each mu and the interpolated value: a mean with positive weights, relative error 3 eps."""
     i = np.clip(np.searchsorted(c, mu, side="right") - 1, 0, c.size - 2)
-    left, right = c[i], c[i + 1]
-    return i, (f[i] * (right - mu) + f[i + 1] * (mu - left)) / (right - left)
+    width = c[i + 1] - c[i]
+    # Shares first: a product with a width of 1e-308 would lose its digits.
+    return i, f[i] * ((c[i + 1] - mu) / width) + f[i + 1] * ((mu - c[i]) / width)
 
 
 def pdf(phase: Tabulated, mu: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
