@@ -49,6 +49,13 @@ def _entropy(config, name):
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_make_collect_report(collector):
+    # Some modules draw a seed when they are imported.
+    with _entropy(collector.config, collector.nodeid):
+        return (yield)
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True)
 def pytest_runtest_protocol(item, nextitem):
     with _entropy(item.config, item.nodeid):
         return (yield)

@@ -54,7 +54,7 @@ def test_names_are_unique_and_every_case_is_documented():
 
 
 def test_every_sampler_on_the_sphere_declares_its_convention():
-    """But for flakes, whose lobes are about no axis, and mixed spheres, whose mean cosine takes seconds and is a case of its own."""
+    """But for flakes, whose lobes are about no axis, and mixed spheres, whose mean cosine takes seconds: it is its own case."""
     for case in all_cases():
         if case.name.startswith(("directions/microflakes/", "directions/polydisperse-mie/")):
             continue
