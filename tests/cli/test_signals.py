@@ -11,6 +11,16 @@ from fogproof.cli.signals import interruptible, stoppable
 from fogproof.errors import stop_behind
 
 
+@pytest.fixture(autouse=True)
+def heard():
+    """In the background and under nohup a process ignores some signals, and so does what it starts; here nothing is ignored."""
+    usual = {signal.SIGINT: signal.default_int_handler, signal.SIGTERM: signal.SIG_DFL, signal.SIGHUP: signal.SIG_DFL}
+    before = {number: signal.signal(number, handler) for number, handler in usual.items()}
+    yield
+    for number, handler in before.items():
+        signal.signal(number, handler)
+
+
 def ask(number=signal.SIGTERM):
     os.kill(os.getpid(), number)
     time.sleep(0.01)
