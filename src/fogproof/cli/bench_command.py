@@ -37,7 +37,7 @@ from fogproof.cli.terminal import say
 def command(names: tuple[str, ...], folder: Path | None, seconds: float, force: bool, as_json: bool) -> int:
     """Measure speed against error: every way to a number in turn, as ratios of the processor's time.
 
-    BENCHMARK is a name or a glob; without any, all are measured, in less than five minutes. A ratio is that of a way to the
+    BENCHMARK is a name or a glob; without any, all are measured. A ratio is that of a way to the
     first of its benchmark. Goals that are not met end nothing: times depend on the machine.
 
     \b
