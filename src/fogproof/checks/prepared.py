@@ -23,7 +23,7 @@ from fogproof.checks.hints import cube_map, cut, supported, why_not_inverse
 from fogproof.checks.jacobian import jacobian_agreement
 from fogproof.checks.mixture import MixtureTest
 from fogproof.checks.normalisation import FLOOR, albedo, mean_cosine, normalisation
-from fogproof.checks.probes import pdf_twice, precision_agreement, reference_agreement, support_of_eval
+from fogproof.checks.probes import pdf_twice, precision_agreement, reference_agreement, support_of_eval, writing
 from fogproof.checks.promises import at_any_atom, inside, usual_labels
 from fogproof.checks.purity import purity
 from fogproof.checks.statistics.repeats import KEPT, expected_repeats
@@ -173,6 +173,7 @@ class Prepared:
 def prepare(subject: Subject, samples: int, seed: int) -> Prepared:
     """Integrate the claim, lay out cells for up to `samples` samples, and ask all single questions."""
     pilot = _pilot(subject, seed)
+    subject, written = writing(subject, pilot.points)
     subject, no_support = supported(subject, pilot.points)
     no_inverse = why_not_inverse(subject, pilot.points)
     if no_inverse:
@@ -184,7 +185,8 @@ def prepare(subject: Subject, samples: int, seed: int) -> Prepared:
     own = subject.dimensions is None and not subject.quasi_random
     calls = small_calls(subject, seed) if own else None
     disbelieved = tuple(filter(None, (no_breaks, no_support, no_inverse)))
-    return replace(prepared, calls=calls, seed=seed, disbelieved=disbelieved)
+    findings = (*written, *prepared.findings)
+    return replace(prepared, findings=findings, calls=calls, seed=seed, disbelieved=disbelieved)
 
 
 def _prepared(subject: Subject, samples: int, seed: int, pilot: Pilot, chart: Chart | None) -> Prepared:
