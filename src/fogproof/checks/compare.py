@@ -22,7 +22,7 @@ from fogproof.checks.escalation import stages
 from fogproof.checks.judgement import Judgement, dependence, judged, share_of_a_claim
 from fogproof.checks.observed import Observed
 from fogproof.checks.quantities import Declared, column, quantities_of
-from fogproof.checks.statistics.goodness import binomial_p
+from fogproof.checks.statistics.binomial import binomial_p
 from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.streams import batch_sizes
 from fogproof.checks.subject import UNIT_ROUNDOFF, Precision

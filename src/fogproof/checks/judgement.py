@@ -12,6 +12,7 @@ from fogproof.checks.escalation import EARLY
 from fogproof.checks.observed import Observed
 from fogproof.checks.quantities import CheckedQuantity
 from fogproof.checks.statistics.bets import Bets
+from fogproof.checks.statistics.cells import MISS
 from fogproof.checks.statistics.coverage import coverage_test
 from fogproof.checks.statistics.dependence import (
     evenness_of_calls,
@@ -20,7 +21,6 @@ from fogproof.checks.statistics.dependence import (
     runs_test,
     spread_of_calls,
 )
-from fogproof.checks.statistics.goodness import MISS
 from fogproof.checks.statistics.heavy import TailEstimate
 from fogproof.checks.statistics.known import Known
 from fogproof.checks.statistics.light import light_tailed_p

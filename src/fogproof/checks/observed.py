@@ -10,8 +10,8 @@ import numpy as np
 
 from fogproof.checks.quantities import CheckedQuantity, column
 from fogproof.checks.statistics.coverage import Coverage
-from fogproof.checks.statistics.dependence import Succession
 from fogproof.checks.statistics.moments import Moments
+from fogproof.checks.statistics.succession import Succession
 from fogproof.checks.verdict import jsonable
 from fogproof.contracts import Draws
 
