@@ -10,7 +10,8 @@ from scipy import stats
 
 from fogproof.checks.call_sizes import one_law
 from fogproof.checks.convergence import _scatter
-from fogproof.checks.density.grid import Marginal, unit_cube_grid
+from fogproof.checks.density.grid import Marginal
+from fogproof.checks.density.grid_of_map import unit_cube_grid
 from fogproof.checks.density.lookup import Lookup
 from fogproof.checks.generators import _correlation, _kolmogorov, _pairs
 from fogproof.checks.statistics.binomial import binomial_p

@@ -11,7 +11,8 @@ from fogproof.checks.call_sizes import Points
 from fogproof.checks.claim import Claim, blind
 from fogproof.checks.counter import Counter
 from fogproof.checks.density.features import emptiest
-from fogproof.checks.density.grid import Grid, refilled
+from fogproof.checks.density.grid import Grid
+from fogproof.checks.density.grid_of_density import refilled
 from fogproof.checks.density.model import looked_at, looked_at_plane
 from fogproof.checks.normalisation import FLOOR, normalisation
 from fogproof.checks.pilot import Pilot

@@ -15,7 +15,8 @@ from fogproof.checks.claim import Claim, claimed
 from fogproof.checks.counter import Counter
 from fogproof.checks.density.charts import Chart, chart_of
 from fogproof.checks.density.features import Ranges
-from fogproof.checks.density.grid import Grid, line_grid_from_cdf, pilot_grid, unit_cube_grid
+from fogproof.checks.density.grid import Grid
+from fogproof.checks.density.grid_of_map import line_grid_from_cdf, pilot_grid, unit_cube_grid
 from fogproof.checks.density.rounding import ROUNDED, Rounded
 from fogproof.checks.edges import edge_uniforms, no_edge_uniforms
 from fogproof.checks.given_cdf import agreement, continuous_cdf, rosenblatt
