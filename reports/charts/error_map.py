@@ -9,8 +9,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from fogproof.reports.charts.axes import Axes, Scale
+from fogproof.reports.charts.axes import Axes
 from fogproof.reports.charts.colours import INK, diverging
+from fogproof.reports.charts.scale import Scale
 from fogproof.reports.charts.sheet import FONT_SIZE, Shape, Sheet, Words
 from fogproof.reports.text import label
 

@@ -6,7 +6,7 @@ import json
 
 import click
 
-from fogproof.checks.verdict import jsonable
+from fogproof.checks.json_values import jsonable
 from fogproof.cli.terminal import say
 from fogproof.pipe.check import Outcome, Settings, check_file, check_program
 from fogproof.pipe.process import Timeouts

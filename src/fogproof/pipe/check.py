@@ -16,8 +16,9 @@ from fogproof.checks import Finding, Verdict, check_estimator, check_family, che
 from fogproof.checks.subject import Precision, Subject
 from fogproof.errors import InvalidInputError, NotInstalledError, SubjectError
 from fogproof.pipe.estimator import PipeEstimator, draws_of
+from fogproof.pipe.faults import ProgramError
 from fogproof.pipe.files import read_rows
-from fogproof.pipe.process import ProgramError, Timeouts
+from fogproof.pipe.process import Timeouts
 from fogproof.pipe.program import Program
 from fogproof.pipe.ratios import check_ratios
 from fogproof.pipe.recorded import Recorded, check_recorded

@@ -11,8 +11,9 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+from fogproof.checks.statistics.binomial import binomial_p
+from fogproof.checks.statistics.cells import MISS
 from fogproof.checks.statistics.extremes import detectable, extremes_p
-from fogproof.checks.statistics.goodness import MISS, binomial_p
 from fogproof.checks.statistics.known import NOTHING, Known
 from fogproof.checks.statistics.light import light_tailed_p, light_tailed_reach
 from fogproof.checks.statistics.moments import Moments
