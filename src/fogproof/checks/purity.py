@@ -113,6 +113,8 @@ def _differs(a: Draw, b: Draw, precision: str) -> tuple[str, float]:
             return name, 1.0
         first, second = one.reshape(len(one), -1).astype(float), two.reshape(len(two), -1).astype(float)
         same = (first == second) | (np.isnan(first) & np.isnan(second))
+        if same.all():
+            continue
         with np.errstate(invalid="ignore"):
             same |= np.abs(first - second) <= _allowed(first, precision)
         share = float(np.mean(~same.all(axis=1)))
