@@ -1,14 +1,11 @@
 """The cause of a rejection is a hypothesis that explains the samples: bugs that shipped are named, what nothing explains is not."""
 
 import random
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from fogproof import Box, HalfLine, Interval, SphericalTriangle, UnitSphere, UnitSquare, check_sampler
-from fogproof.checks.density.lattice import lattice
-from fogproof.checks.diagnosis import directions as directions_of
 from fogproof.checks.diagnosis import holes
 from fogproof.checks.diagnosis.diagnose import _setting
 from fogproof.checks.diagnosis.factors import named_factor
@@ -188,16 +185,6 @@ def test_points_of_a_plane_are_told_from_those_of_a_cube():
     verdict = check_sampler(sample, lambda x: np.full(len(x), 2 / np.pi), triangle, dimensions=2, samples=100_000)
     assert verdict.cause == "missing Jacobian", str(verdict)
     assert "area of a plane" in verdict.diagnosis
-
-
-@pytest.mark.parametrize("made", [directions_of._stretched, directions_of._cosine_raised])
-@pytest.mark.parametrize("value", [0.4, 1.7])
-def test_moved_directions_have_a_density(made, value):
-    n = 40_000
-    x = UnitSphere().law(np.empty((0, 3))).place(lattice(n, 2, np.full(2, 0.5)))
-    tilted = np.array([0.6, 0.0, 0.8])
-    s = SimpleNamespace(p=lambda y: (1 + y @ tilted) / (4 * np.pi))
-    assert np.mean(made(s, value)(x)) * 4 * np.pi == pytest.approx(1, abs=3e-3)
 
 
 def test_a_logarithm_and_what_is_no_number_are_named():

@@ -31,7 +31,7 @@ def reference_agreement(subject: Subject, points: np.ndarray) -> Finding:
 
 
 def writing(subject: Subject, points: np.ndarray) -> tuple[Subject, list[Finding]]:
-    """The pdf must leave its points as they are: return the subject, with a pdf that gets copies if it does not, and a finding then."""
+    """The pdf must leave its points as they are: return the subject, and a finding if it does not; its pdf gets copies then."""
     kept = points[:_ASKED].copy()
     subject.density(kept)
     if np.array_equal(kept, points[:_ASKED], equal_nan=True):

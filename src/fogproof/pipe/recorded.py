@@ -12,7 +12,7 @@ import numpy as np
 
 from fogproof.checks import Verdict
 from fogproof.checks.diagnosis.causes import likely_cause
-from fogproof.checks.prepared import PILOT
+from fogproof.checks.pilot import PILOT
 from fogproof.checks.promises import Watch
 from fogproof.checks.sampler import SamplerCheck
 from fogproof.checks.subject import Subject
