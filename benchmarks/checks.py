@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from fogproof.checks import check_estimator, check_sampler, fresh_seed
-from fogproof.checks.prepared import prepare
+from fogproof.checks.preparing import prepare
 from fogproof.checks.streams import batch_generator, batch_sizes
 from fogproof.checks.subject import Subject
 from fogproof.contracts import Reference

@@ -18,7 +18,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from fogproof.checks.verdict import jsonable
+from fogproof.checks.json_values import jsonable
 from fogproof.reports import write_report
 from fogproof.verify import record, run, select
 

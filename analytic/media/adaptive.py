@@ -16,17 +16,17 @@ too, and held to what one jump in a panel can cost (`jump_bound`).
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 
 from fogproof.analytic.arithmetic.budget import afford, budget, may_refine, of_bounded_variation
 from fogproof.analytic.arithmetic.error_free import EPS, TINY, two_sum
-from fogproof.analytic.arithmetic.jump_bound import INSIDE, of_a_jump
-from fogproof.analytic.arithmetic.panel_rule import NODES, RUNNING, WEIGHTS
+from fogproof.analytic.arithmetic.panel_rule import NODES
 from fogproof.analytic.geometry.rays import Thickness
 from fogproof.analytic.media.breakpoints import breakpoints
 from fogproof.analytic.media.coefficients import ROOM, Coefficients, coefficients
+from fogproof.analytic.media.depth_panels import DepthPanels, joined, measured, starts_of, with_jumps_beside
 from fogproof.scene import AnyMedium, Ray
 from fogproof.scene.kinds import given
 
@@ -49,29 +49,10 @@ BLOCK = 4096
 SPARE = 16.0
 """Times as small as its share is what a jump would cost in a panel without one: halving a smooth one is cheap."""
 
-CUTS = np.concatenate([[0.0], NODES, [1.0]])
-"""Where a panel may be cut beside a jump, as shares of its width."""
-
-BESIDE, CROSSED = np.array([0.02, 0.1, 0.5, 0.9, 0.98]), np.array([0.2, 0.8, 1.0, 0.8, 0.2])
-"""Places in a panel, as shares, and what of its width a jump may be moved over that crosses them, twice over."""
-
 SOURCE = "Gauss-Legendre quadrature, panel against its halves; composition as in Porter & Duff 1984"
 
 SourceTerm = Callable[[Coefficients], np.ndarray]
 """Radiance gained per metre [W/(m^3 sr)] at points with these coefficients."""
-
-
-class Look(Protocol):
-    """What gives sigma_t and the source on rays (p,) at distances (p, nodes), (p, nodes) or (p, nodes, channels).
-
-    moved  (p, nodes, 3) added to the places [m]
-    """
-
-    def __call__(
-        self, which: np.ndarray, t: np.ndarray, moved: np.ndarray | float = 0.0
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Return both."""
-        ...
 
 
 class Along(NamedTuple):
@@ -81,28 +62,6 @@ class Along(NamedTuple):
     tau_error: np.ndarray
     gain: np.ndarray
     gain_error: np.ndarray
-
-
-class DepthPanels(NamedTuple):
-    """Panels of all rays, (p,) or (p, channels) each; the errors are estimates for this panel.
-
-    jumps   sum of |differences| between neighbouring nodes, of sigma_t and of the source, (p, 2) or (p, channels, 2)
-    ends    their values at the first and the last node, (p, 2, 2) or (p, channels, 2, 2)
-    hidden  least error of tau and of gain by what one jump in the panel would cost, (p, 2) or (p, channels, 2)
-    cuts    where the panel is cut next, as shares of its width, (p, 2): the middle twice, or both sides of a jump
-    """
-
-    ray: np.ndarray
-    start: np.ndarray
-    width: np.ndarray
-    tau: np.ndarray
-    gain: np.ndarray
-    tau_error: np.ndarray
-    gain_error: np.ndarray
-    jumps: np.ndarray
-    ends: np.ndarray
-    hidden: np.ndarray
-    cuts: np.ndarray
 
 
 def thickness_by_quadrature(medium: AnyMedium, ray: Ray, channels: int | None) -> Thickness:
@@ -142,14 +101,14 @@ def integrate_along(
 
     def evaluate(which: np.ndarray, start: np.ndarray, width: np.ndarray) -> DepthPanels:
         blocks = [slice(i, i + BLOCK) for i in range(0, max(len(which), 1), BLOCK)]
-        found = [_panels(look, which[b], start[b], width[b], reach if foreign else None) for b in blocks]
+        found = [measured(look, which[b], start[b], width[b], reach if foreign else None) for b in blocks]
         return DepthPanels(*(np.concatenate(columns) for columns in zip(*found, strict=True)))
 
     count = len(origin)
     with budget(count):
         panels = _refined(evaluate, evaluate(*_first(medium, ray)), count, tolerance)
         if foreign:
-            panels = _beside(look, panels, origin, direction)
+            panels = with_jumps_beside(look, panels, origin, direction)
     return _compose(panels, count, reach)
 
 
@@ -166,11 +125,11 @@ def _refined(evaluate: Evaluate, panels: DepthPanels, count: int, tolerance: flo
         if turn and not may_refine():
             panels = _left_undone(panels)
             break
-        everything = _join(done, *_halved(evaluate, panels))
+        everything = joined(done, *_halved(evaluate, panels))
         bad = _too_wrong(everything, count, tolerance)
         panels = DepthPanels(*(column[bad] for column in everything))
         done = DepthPanels(*(column[~bad] for column in everything))
-    return _join(done, panels)
+    return joined(done, panels)
 
 
 def _halved(evaluate: Evaluate, panels: DepthPanels) -> list[DepthPanels]:
@@ -212,52 +171,9 @@ def _first(medium: AnyMedium, ray: Ray) -> tuple[np.ndarray, np.ndarray, np.ndar
     return which[owner], start[owner] + step * share, share
 
 
-def _panels(
-    look: Look, which: np.ndarray, start: np.ndarray, width: np.ndarray, reach: np.ndarray | None
-) -> DepthPanels:
-    """Return the panels; where the rays' reach from the origin of space is given [m], held to what one jump would cost."""
-    t = start[:, None] + width[:, None] * NODES
-    if reach is not None:  # the edges too, from inside by more than a place is rounded by
-        inside = np.minimum(np.maximum(INSIDE * width, 8 * EPS * (reach[which] + start + width)), width * NODES[0] / 2)
-        t = np.concatenate([(start + inside)[:, None], t, (start + width - inside)[:, None]], axis=1)
-    every = np.stack([np.moveaxis(a, 1, -1) for a in look(which, t)], axis=-2)  # sigma_t and source, then nodes
-    sigma, q = np.moveaxis(every if reach is None else every[..., 1:-1], -2, 0)
-    scale = width.reshape(-1, *[1] * (sigma.ndim - 1))
-    with np.errstate(under="ignore", over="ignore"):
-        tau = (scale * (sigma * WEIGHTS)).sum(axis=-1)
-        dimmed = np.exp(-scale * (sigma @ RUNNING.T)) * q
-        gain = (scale * (dimmed * WEIGHTS)).sum(axis=-1)
-    ends, none = every[..., [0, -1]], np.zeros_like(tau)
-    steps = np.abs(np.diff(every, axis=-1))
-    jumps, hidden, cuts = steps.sum(axis=-1), np.zeros(ends.shape[:-1]), np.full((len(which), 2), 0.5)
-    if reach is not None:
-        edges = ends.copy()
-        with np.errstate(under="ignore", over="ignore"):
-            before = inside.reshape(scale.shape) * ends[..., 0, :]  # optical depth between an edge and its place inside
-            edges[..., 1, :] *= np.exp(-np.stack([before[..., 0], tau - before[..., 1]], axis=-1))
-            hidden = scale * of_a_jump(np.stack([sigma, dimmed], axis=-2), edges)
-        # The cuts of the one that changes at the same place everywhere, as a jump does.
-        kinds = int(np.prod(jumps.shape[1:]))
-        steps, total = steps.reshape(len(which), kinds, len(CUTS) - 1), jumps.reshape(len(which), kinds)
-        lone = ((steps > total[..., None] / 2) | (total[..., None] == 0)).all(axis=1) & (total > 0).any(axis=-1)[
-            :, None
-        ]
-        at = np.argmax(lone, axis=1)
-        alone = lone.any(axis=1)[:, None] & (width[:, None] > 256 * EPS * (reach[which] + start + width)[:, None])
-        cuts = np.where(alone, np.stack([CUTS[at], CUTS[at + 1]], axis=1), cuts)
-    return DepthPanels(which, start, width, tau, gain, none, none, jumps, ends, hidden, cuts)
-
-
-def _join(*parts: DepthPanels) -> DepthPanels:
-    """Return the panels of all parts, in order along each ray."""
-    joined = DepthPanels(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
-    order = np.lexsort((joined.start, joined.ray))
-    return DepthPanels(*(column[order] for column in joined))
-
-
 def _too_wrong(panels: DepthPanels, count: int, tolerance: float) -> np.ndarray:
     """Return which panels hold more than their share of the error that their ray may have."""
-    rays, (first, number) = panels.ray, _starts(panels.ray, count)
+    rays, (first, number) = panels.ray, starts_of(panels.ray, count)
     before = np.cumsum(panels.tau, axis=0) - panels.tau
     with np.errstate(under="ignore", invalid="ignore"):
         seen = np.exp(-(before - before[first[rays]]))
@@ -289,37 +205,13 @@ def _left_undone(panels: DepthPanels) -> DepthPanels:
     return panels._replace(tau_error=tau_error, gain_error=np.maximum(panels.gain_error, rough))
 
 
-def _beside(look: Look, panels: DepthPanels, origin: np.ndarray, direction: np.ndarray) -> DepthPanels:
-    """Return the panels with the errors of places that are rounded across the ray, where a function may jump as well.
-
-    A ray that meets a jump at an angle alpha meets it 1 / sin(alpha) times as far away as the place was moved by.
-    """
-    t = panels.start[:, None] + panels.width[:, None] * BESIDE
-    at = np.abs(origin[panels.ray])[:, None] + np.abs(t[..., None] * direction[panels.ray][:, None])
-    here = look(panels.ray, t)
-    off = [np.zeros_like(panels.tau), np.zeros_like(panels.gain)]
-    for axis in np.eye(3):
-        for sign in (-2 * EPS, 2 * EPS):
-            there = look(panels.ray, t, sign * at * axis)
-            for total, new, old in zip(off, there, here, strict=True):
-                total += np.tensordot(CROSSED, np.abs(new - old), axes=(0, 1))
-    width = panels.width.reshape(-1, *[1] * (panels.tau.ndim - 1))
-    return panels._replace(tau_error=panels.tau_error + width * off[0], gain_error=panels.gain_error + width * off[1])
-
-
-def _starts(rays: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return where each ray's panels begin in the sorted list, and how many it has."""
-    number = np.bincount(rays, minlength=count)
-    return np.minimum(np.cumsum(number) - number, max(len(rays) - 1, 0)), number
-
-
 def _compose(panels: DepthPanels, count: int, reach: np.ndarray) -> Along:
     """Compose the panels of each ray from the camera on, with the errors and what rounding adds.
 
     A rounded position moves a value by at most the change of the coefficient there, so all of them together by the
     sum of its changes along the ray times EPS (|origin| + t); four times that allows for changes across the ray.
     """
-    first, number = _starts(panels.ray, count)
+    first, number = starts_of(panels.ray, count)
     rank = np.arange(len(panels.ray)) - first[panels.ray]
     tau, low, gain, tau_error, gain_error = (np.zeros((count, *panels.tau.shape[1:])) for _ in range(5))
     last = np.zeros((count, *panels.ends.shape[1:-1]))

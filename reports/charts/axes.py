@@ -5,63 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
-from math import ceil, floor, inf, log10
 from typing import Literal
 
 import numpy as np
 
 from fogproof.reports.charts.colours import GRID, INK
-from fogproof.reports.charts.sheet import FONT_SIZE, Dots, Group, Mark, Shape, Sheet, Words
+from fogproof.reports.charts.scale import Scale, Values
+from fogproof.reports.charts.sheet import FONT_SIZE, Dots, Group, Mark, Outline, Sheet, Words
 from fogproof.reports.charts.sheet_png import text_width
 
-Values = Sequence[float] | np.ndarray
 DASHED = (7.0, 4.0)
 Marker = Literal["dot", "square", "triangle", "cross", "diamond"]
-
-
-LEAST, MOST = 1e-290, 1e290
-"""What scales reach at most: with margins around it is a number still."""
-
-
-@dataclass(frozen=True)
-class Scale:
-    """Data from `low` to `high`, which differ; logarithmic ones are positive."""
-
-    low: float
-    high: float
-    log: bool = False
-
-    def __call__(self, values: Values) -> np.ndarray:
-        """Return where values lie: 0 at low, 1 at high."""
-        data = np.asarray(values, dtype=float)
-        place: np.ndarray
-        if not self.log:
-            place = (data - self.low) / (self.high - self.low)
-            return place
-        with np.errstate(divide="ignore", invalid="ignore"):
-            place = (np.log10(data) - log10(self.low)) / (log10(self.high) - log10(self.low))
-            return place
-
-    def ticks(self, most: int) -> list[tuple[float, str]]:
-        """Return round values within the scale, about `most` of them at most, and their labels."""
-        if most < 1:
-            return []
-        if not 0 < self.high - self.low < inf:  # a record changed by hand may hold anything
-            return []
-        return _decades(self.low, self.high, most) if self.log else _steps(self.low, self.high, most)
-
-
-def spanning(values: Values, log: bool = False, margin: float = 0.05) -> Scale:
-    """Return a scale around all finite values (positive ones if logarithmic), never empty."""
-    data = np.asarray(values, dtype=float)
-    data = data[np.isfinite(data) & ((data > 0) | (not log))]
-    data = np.clip(data, LEAST if log else -MOST, MOST)
-    low, high = (float(data.min()), float(data.max())) if data.size else (1.0, 1.0)
-    if log:
-        room = max(high**margin / low**margin, 1.05)
-        return Scale(low / room, high * room, True)
-    room = margin * (high - low) or 0.05 * abs(high) or 1.0
-    return Scale(low - room, high + room)
 
 
 @dataclass
@@ -83,10 +37,10 @@ class Axes:
         add = self.sheet.shapes.append
         if rules:
             grid = [[(x, top), (x, bottom)] for x, _ in xs] + [[(left, y), (left + width, y)] for y, _ in ys]
-            add(Shape(grid, GRID, 1))
+            add(Outline(grid, GRID, 1))
         add(Group(self.box, self._inside))
         marks = [[(x, bottom), (x, bottom + 4)] for x, _ in xs] + [[(left - 4, y), (left, y)] for y, _ in ys]
-        add(Shape([[(left, top), (left, bottom), (left + width, bottom)], *marks], INK, 1))
+        add(Outline([[(left, top), (left, bottom), (left + width, bottom)], *marks], INK, 1))
         if across:  # axes without a label share the ticks of those below
             self.sheet.shapes += [Words(x, bottom + 6 + FONT_SIZE, name, INK, "middle") for x, name in xs]
             add(Words(left + width / 2, bottom + 12 + 2 * FONT_SIZE, across, INK, "middle"))
@@ -111,7 +65,7 @@ class Axes:
         right, bottom = left + width, top + height
         self.sheet.shapes.append(Group(self.box, self._inside))
         ticks = [(bottom - height * float(self.y([value])[0]), name) for value, name in self.y.ticks(5)]
-        self.sheet.shapes.append(Shape([[(right, y), (right + 4, y)] for y, _ in ticks], INK, 1))
+        self.sheet.shapes.append(Outline([[(right, y), (right + 4, y)] for y, _ in ticks], INK, 1))
         self.sheet.shapes += [Words(right + 7, y + 0.36 * FONT_SIZE, name, INK) for y, name in ticks]
         widest = max((text_width(name, FONT_SIZE) for _, name in ticks), default=0)
         self.sheet.shapes.append(
@@ -137,7 +91,7 @@ class Axes:
                 pieces[-1].append(point)
         pieces = [piece for piece in pieces if len(piece) > 1]
         if pieces:
-            self._inside.append(Shape(pieces, colour, width, dash))
+            self._inside.append(Outline(pieces, colour, width, dash))
 
     def band(self, x: Values, low: Values, high: Values, colour: str, opacity: float = 0.25) -> None:
         """Fill between two curves where both are numbers."""
@@ -145,7 +99,7 @@ class Axes:
         if known.sum() > 1:
             x, low, high = (np.asarray(values, dtype=float)[known] for values in (x, low, high))
             around = self.at(x, low) + self.at(x, high)[::-1]
-            self._inside.append(Shape([around], fill=colour, opacity=opacity))
+            self._inside.append(Outline([around], fill=colour, opacity=opacity))
 
     def stairs(
         self, values: Values, edges: Values, colour: str, dash: tuple[float, float] | None = None, fill: bool = False
@@ -170,7 +124,7 @@ class Axes:
         for (a, b), column in zip(pairwise(x), colours, strict=True):
             for (c, d), colour in zip(pairwise(y), column, strict=True):
                 alike.setdefault(colour, []).append([(a, c), (b, c), (b, d), (a, d)])
-        self._inside += [Shape(paths, fill=colour, crisp=True) for colour, paths in alike.items()]
+        self._inside += [Outline(paths, fill=colour, crisp=True) for colour, paths in alike.items()]
 
 
 def mark(at: Sequence[tuple[float, float]], colour: str, marker: Marker = "dot", size: float = 4) -> Mark:
@@ -179,85 +133,9 @@ def mark(at: Sequence[tuple[float, float]], colour: str, marker: Marker = "dot",
         return Dots(at, colour, size)
     if marker == "cross":
         strokes = [[(x - size, y - size), (x + size, y + size)] for x, y in at]
-        return Shape([*strokes, *[[(x - size, y + size), (x + size, y - size)] for x, y in at]], colour, 2)
+        return Outline([*strokes, *[[(x - size, y + size), (x + size, y - size)] for x, y in at]], colour, 2)
     corners = 3 if marker == "triangle" else 4
     start = np.pi / 4 if marker == "square" else np.pi / 2
     angle = start + 2 * np.pi * np.arange(corners) / corners
     outline = list(zip((size * np.cos(angle)).tolist(), (-size * np.sin(angle)).tolist(), strict=True))
-    return Shape([[(x + a, y + b) for a, b in outline] for x, y in at], fill=colour)
-
-
-@dataclass(frozen=True)
-class Key:
-    """One entry of a legend; `kind` is "line", "area" or a marker, which may stand on a line."""
-
-    text: str
-    colour: str
-    kind: str = "line"
-    dash: tuple[float, float] | None = None
-    joined: bool = False
-
-
-def legend(sheet: Sheet, keys: Sequence[Key], left: float, top: float, width: float) -> float:
-    """Write the entries side by side, as many on a line as fit, and return the height [px] that they take."""
-    x, y = left, top + FONT_SIZE
-    for key in keys:
-        needed = 32 + text_width(key.text, FONT_SIZE)
-        if x > left and x + needed > left + width:
-            x, y = left, y + 1.4 * FONT_SIZE
-        middle = y - 0.36 * FONT_SIZE
-        if key.kind == "line" or key.joined:
-            sheet.shapes.append(Shape([[(x, middle), (x + 26, middle)]], key.colour, 2, key.dash))
-        if key.kind == "area":
-            corners = [(x, middle - 5), (x + 26, middle - 5), (x + 26, middle + 5), (x, middle + 5)]
-            sheet.shapes.append(Shape([corners], fill=key.colour, opacity=0.4 if key.colour != GRID else 1))
-        elif key.kind != "line":
-            sheet.shapes.append(mark([(x + 13, middle)], key.colour, key.kind, 5))  # type: ignore[arg-type]
-        sheet.shapes.append(Words(x + 32, y, key.text, INK))
-        x += needed + 18
-    return y - top + 0.7 * FONT_SIZE if keys else 0.0
-
-
-def _steps(low: float, high: float, most: int) -> list[tuple[float, str]]:
-    raw = (high - low) / most
-    power = 10.0 ** floor(log10(raw))
-    step = next(factor * power for factor in (1, 2, 2.5, 5, 10) if factor * power >= raw * (1 - 1e-9))
-    first, last = ceil(low / step - 1e-9), floor(high / step + 1e-9)
-    if last - first > 2 * most:  # a span below the last digit of its numbers
-        return []
-    values = [step * i for i in range(first, last + 1)]
-    digits = max((len(f"{value / step:.0f}") for value in values), default=1) + (2 if step == 2.5 * power else 1)
-    return [(value, _plain(value, digits)) for value in values]
-
-
-def _plain(value: float, digits: int) -> str:
-    if value == 0:
-        return "0"
-    text = f"{value:.{min(digits, 15)}g}"
-    mantissa, _, exponent = text.partition("e")
-    return (f"{mantissa}·{_power(int(exponent))}" if exponent else text).replace("-", "−")
-
-
-def _decades(low: float, high: float, most: int) -> list[tuple[float, str]]:
-    if low <= 0:
-        return []
-    first, last = floor(log10(low)), ceil(log10(high))
-    span = log10(high) - log10(low)
-    factors = (1, 2, 5) if span < 2 else (1,)
-    every = max(1, ceil(span / most))
-    values = [f * 10.0**e for e in range(first, last + 1) if e % every == 0 for f in factors]
-    within = [value for value in values if low * (1 - 1e-9) <= value <= high * (1 + 1e-9)]
-    if len(within) < 2:
-        return _steps(low, high, most)
-    plain = all(1e-3 <= value < 1e5 for value in within)  # one notation an axis
-    return [(value, f"{value:g}" if plain else _mantissa(value)) for value in within]
-
-
-def _mantissa(value: float) -> str:
-    exponent = floor(log10(value) + 1e-9)
-    factor = round(value / 10.0**exponent)
-    return _power(exponent) if factor == 1 else f"{factor}·{_power(exponent)}"
-
-
-def _power(exponent: int) -> str:
-    return "10" + str(exponent).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+    return Outline([[(x + a, y + b) for a, b in outline] for x, y in at], fill=colour)

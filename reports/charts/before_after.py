@@ -7,8 +7,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from fogproof.reports.charts.axes import DASHED, Axes, Key, legend, spanning
+from fogproof.reports.charts.axes import DASHED, Axes
 from fogproof.reports.charts.colours import EXPECTED, GRID, INK, OBSERVED
+from fogproof.reports.charts.legend import Key, legend
+from fogproof.reports.charts.scale import spanning
 from fogproof.reports.charts.sheet import Sheet, Words
 from fogproof.reports.text import label
 

@@ -8,8 +8,10 @@ from typing import ClassVar
 import numpy as np
 
 from fogproof.errors import InvalidValueError
-from fogproof.reports.charts.axes import DASHED, Axes, Key, Scale, legend
+from fogproof.reports.charts.axes import DASHED, Axes
 from fogproof.reports.charts.colours import EXPECTED, OBSERVED
+from fogproof.reports.charts.legend import Key, legend
+from fogproof.reports.charts.scale import Scale
 from fogproof.reports.charts.sheet import Sheet
 from fogproof.reports.text import label
 

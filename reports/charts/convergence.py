@@ -7,9 +7,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from fogproof.reports.charts.axes import DASHED, Axes, Marker, Scale, spanning
+from fogproof.reports.charts.axes import DASHED, Axes, Marker
 from fogproof.reports.charts.colours import EXPECTED, FIFTH, FOURTH, INK, OBSERVED, SIXTH, THIRD
 from fogproof.reports.charts.direct_labels import EndLabel, height_of, write_labels
+from fogproof.reports.charts.scale import Scale, spanning
 from fogproof.reports.charts.sheet import FONT_SIZE, Sheet
 from fogproof.reports.text import label
 

@@ -7,8 +7,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from fogproof.reports.charts.axes import DASHED, Axes, Key, Marker, Scale, legend
+from fogproof.reports.charts.axes import DASHED, Axes, Marker
 from fogproof.reports.charts.colours import EXPECTED, GRID, OBSERVED
+from fogproof.reports.charts.legend import Key, legend
+from fogproof.reports.charts.scale import Scale
 from fogproof.reports.charts.sheet import Sheet
 
 

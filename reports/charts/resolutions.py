@@ -8,8 +8,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from fogproof.reports.charts.axes import Axes, Key, Marker, Scale, legend, spanning
+from fogproof.reports.charts.axes import Axes, Marker
 from fogproof.reports.charts.colours import EXPECTED, OBSERVED, THIRD
+from fogproof.reports.charts.legend import Key, legend
+from fogproof.reports.charts.scale import Scale, spanning
 from fogproof.reports.charts.sheet import Sheet
 from fogproof.reports.text import label
 

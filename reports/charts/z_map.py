@@ -8,9 +8,10 @@ from typing import ClassVar
 import numpy as np
 
 from fogproof.errors import InvalidValueError
-from fogproof.reports.charts.axes import Axes, Scale
+from fogproof.reports.charts.axes import Axes
 from fogproof.reports.charts.bins import closed
 from fogproof.reports.charts.colours import diverging
+from fogproof.reports.charts.scale import Scale
 from fogproof.reports.charts.sheet import Sheet
 from fogproof.reports.text import label
 

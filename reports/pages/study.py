@@ -14,7 +14,8 @@ from fogproof.reports.pages.page import STATUSES
 from fogproof.reports.pages.summaries import needs
 from fogproof.reports.pages.templates import fill
 from fogproof.reports.records.runs import Case, Status
-from fogproof.reports.records.studies import Answer, SceneRecord, StudyEntry, StudyRecord, TargetRecord, as_run
+from fogproof.reports.records.studies import as_run
+from fogproof.reports.records.study_record import Answer, SceneRecord, StudyEntry, StudyRecord, TargetRecord
 from fogproof.reports.text import file_stem
 
 

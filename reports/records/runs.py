@@ -13,7 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, TypeVar, cast
 
-from fogproof.checks.verdict import Verdict, jsonable
+from fogproof.checks.json_values import jsonable
+from fogproof.checks.verdict import Verdict
 from fogproof.errors import InvalidInputError, shorten
 from fogproof.input_files import parse_json, read_text
 from fogproof.oracle_error import OracleError

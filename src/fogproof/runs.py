@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from fogproof.checks import Verdict, fresh_seed
+from fogproof.checks.json_values import jsonable
 from fogproof.checks.streams import batch_generator
-from fogproof.checks.verdict import jsonable
 from fogproof.errors import InvalidValueError
 from fogproof.validate import number
 from fogproof.verify import ALPHA, SCHEMA, environment

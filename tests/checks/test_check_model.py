@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fogproof.checks.density.charts import chart_of
-from fogproof.checks.density.grid import grid_of
+from fogproof.checks.density.grid_of_density import grid_of
 from fogproof.checks.density.model import Effort, integrated, looked_at
 from fogproof.checks.density.rounding import Rounded, blurred
 from fogproof.checks.subject import nudged

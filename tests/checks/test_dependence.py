@@ -7,7 +7,8 @@ import pytest
 from scipy import stats
 
 from fogproof import check_estimator, compare_estimators
-from fogproof.checks.statistics.dependence import Succession, _counted, concordance, evenness_of_calls
+from fogproof.checks.statistics.dependence import concordance, evenness_of_calls
+from fogproof.checks.statistics.succession import Succession, _counted
 
 
 def lagged(lag):

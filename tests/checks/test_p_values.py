@@ -10,12 +10,14 @@ from scipy import stats
 
 from fogproof.checks.call_sizes import one_law
 from fogproof.checks.convergence import _scatter
-from fogproof.checks.density.grid import Marginal, unit_cube_grid
+from fogproof.checks.density.grid import Marginal
+from fogproof.checks.density.grid_of_map import unit_cube_grid
 from fogproof.checks.density.lookup import Lookup
 from fogproof.checks.generators import _correlation, _kolmogorov, _pairs
+from fogproof.checks.statistics.binomial import binomial_p
+from fogproof.checks.statistics.chi_square import chi_square, deviances, pooled
 from fogproof.checks.statistics.coverage import SLACK, Coverage, coverage_test
 from fogproof.checks.statistics.dependence import (
-    Succession,
     concordance,
     repeated_stretches,
     repeats_within_calls,
@@ -23,22 +25,17 @@ from fogproof.checks.statistics.dependence import (
     spread_of_calls,
 )
 from fogproof.checks.statistics.extremes import extremes_p
-from fogproof.checks.statistics.goodness import (
-    binomial_p,
-    chi_square,
-    chi_square_sparse,
-    deviances,
-    kolmogorov,
-    pooled,
-)
 from fogproof.checks.statistics.heavy import TailEstimate
 from fogproof.checks.statistics.known import Known
+from fogproof.checks.statistics.kolmogorov import kolmogorov
 from fogproof.checks.statistics.light import light_tailed_p
 from fogproof.checks.statistics.means import mean_test, trusted
 from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.statistics.scan import _extreme_p, scan, scan_ends, scan_plane
 from fogproof.checks.statistics.serial import Successions, in_units, serial_test
 from fogproof.checks.statistics.smooth import cross, smooth
+from fogproof.checks.statistics.sparse_chi_square import chi_square_sparse
+from fogproof.checks.statistics.succession import Succession
 from fogproof.checks.statistics.tails import binomial_at_least
 from fogproof.checks.statistics.welch import difference_test
 from fogproof.checks.subject import Subject

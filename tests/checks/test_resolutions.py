@@ -13,9 +13,10 @@ from fogproof.checks.escalation import WEIGHTS, stages
 from fogproof.checks.estimator import _unresolved
 from fogproof.checks.sampled_integrals import _estimated
 from fogproof.checks.statistics.bets import Bets
+from fogproof.checks.statistics.binomial import binomial, binomial_p, binomial_resolution
 from fogproof.checks.statistics.extremes import detectable, extremes_p
-from fogproof.checks.statistics.goodness import binomial, binomial_p, binomial_resolution, kolmogorov
 from fogproof.checks.statistics.known import Known
+from fogproof.checks.statistics.kolmogorov import kolmogorov
 from fogproof.checks.statistics.light import light_tailed_p, light_tailed_reach
 from fogproof.checks.statistics.means import mean_test
 from fogproof.checks.statistics.moments import Moments

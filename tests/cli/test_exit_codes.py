@@ -15,7 +15,7 @@ from report_records import typical
 
 import fogproof.cli.commands
 import fogproof.cli.list_command
-from fogproof.checks.verdict import jsonable
+from fogproof.checks.json_values import jsonable
 from fogproof.cli.signals import _ASKING, Stopped
 
 ROOT = Path(__file__).resolve().parents[2]

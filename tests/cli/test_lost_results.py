@@ -11,7 +11,7 @@ import pytest
 from fuzz_commands import Run, here
 from report_records import typical
 
-from fogproof.checks.verdict import jsonable
+from fogproof.checks.json_values import jsonable
 from fogproof.errors import InvalidInputError
 from fogproof.reports import REPORT, prepare_folder, write_report
 

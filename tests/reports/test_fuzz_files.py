@@ -9,7 +9,7 @@ import pytest
 from fuzz_files import fuzz
 from report_records import typical
 
-from fogproof.checks.verdict import jsonable
+from fogproof.checks.json_values import jsonable
 from fogproof.errors import FogproofError, InvalidInputError
 from fogproof.reports.records.runs import load_record
 from fogproof.scene.files import read_scene

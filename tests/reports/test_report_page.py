@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 from report_records import HOSTILE, Page, bins_figure, case, mean_figure, record, typical, verdict, z_figure
 
-from fogproof.checks.verdict import EffectInterval, Finding, Resolution, Verdict, jsonable
+from fogproof.checks.json_values import jsonable
+from fogproof.checks.verdict import EffectInterval, Finding, Resolution, Verdict
 from fogproof.reports import write_report
 from fogproof.reports.charts.findings import parse_figure
 from fogproof.reports.charts.p_values import PValueHistogram, PValues

@@ -9,7 +9,8 @@ from fogproof.domains import Interval
 from fogproof.zoo.bug import Planted
 from fogproof.zoo.limits import chi_square_distance, samples_needed
 from fogproof.zoo.mutants.estimators import MUTATIONS as ESTIMATORS
-from fogproof.zoo.mutants.samplers import MUTATIONS, OfUniforms
+from fogproof.zoo.mutants.of_uniforms import OfUniforms
+from fogproof.zoo.mutants.samplers import MUTATIONS
 
 
 def case(sample, dimensions=2, **more):

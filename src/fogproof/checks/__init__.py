@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from fogproof.checks.estimator import check_estimator
     from fogproof.checks.family import check_family
     from fogproof.checks.generators import check_streams
+    from fogproof.checks.json_values import jsonable as jsonable
     from fogproof.checks.limits import within as within
     from fogproof.checks.mis import check_mis
     from fogproof.checks.planning import samples_for
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
         Resolution,
         Verdict,
     )
-    from fogproof.checks.verdict import jsonable as jsonable
 
 __all__ = [
     "EffectInterval",

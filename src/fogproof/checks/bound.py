@@ -17,7 +17,7 @@ import numpy as np
 
 from fogproof.checks.arguments import samples_of, seed_of
 from fogproof.checks.diagnosis import likely_cause
-from fogproof.checks.statistics.goodness import MISS
+from fogproof.checks.statistics.cells import MISS
 from fogproof.checks.streams import batch_generator
 from fogproof.checks.subject import UNIT_ROUNDOFF, Precision, call, numbers
 from fogproof.checks.verdict import Finding, Outcome, Resolution, Verdict

@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 from fogproof.checks.promises import at_any_atom, inside
-from fogproof.checks.statistics.goodness import MISS
+from fogproof.checks.statistics.cells import MISS
 from fogproof.checks.streams import batch_generator
 from fogproof.checks.subject import Subject
 from fogproof.checks.verdict import Finding, Outcome, Resolution

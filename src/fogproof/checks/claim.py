@@ -16,7 +16,8 @@ import numpy as np
 
 from fogproof.checks.density.charts import Chart
 from fogproof.checks.density.features import Ranges, ranges_of_line, ranges_of_plane
-from fogproof.checks.density.grid import Grid, grid_of
+from fogproof.checks.density.grid import Grid
+from fogproof.checks.density.grid_of_density import grid_of
 from fogproof.checks.density.lattice import lattice
 from fogproof.checks.density.model import Density, Effort, integrated, second_view, unknown
 from fogproof.checks.density.quadrature import Leaves

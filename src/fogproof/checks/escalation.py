@@ -12,7 +12,8 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from fogproof.checks.statistics.goodness import MISS, kolmogorov_critical
+from fogproof.checks.statistics.cells import MISS
+from fogproof.checks.statistics.kolmogorov import kolmogorov_critical
 from fogproof.checks.verdict import Finding
 
 WEIGHTS = {

@@ -18,7 +18,8 @@ from fogproof.checks.arguments import alpha_of, bounds_of, samples_of, seed_of, 
 from fogproof.checks.diagnosis import likely_cause
 from fogproof.checks.draws import Source, count_of
 from fogproof.checks.escalation import stages
-from fogproof.checks.judgement import Again, Judgement, judged
+from fogproof.checks.judgement import Judgement, judged
+from fogproof.checks.mean_claim import Again
 from fogproof.checks.observed import Observed
 from fogproof.checks.quantities import Declared, column, quantities_of
 from fogproof.checks.streams import batch_sizes, growing_sizes

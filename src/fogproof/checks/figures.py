@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from fogproof.checks.density.grid import GridPlane, Marginal
-from fogproof.checks.verdict import jsonable
+from fogproof.checks.json_values import jsonable
 
 _BINS = 64
 

@@ -17,7 +17,7 @@ import numpy as np
 from fogproof.checks.arguments import alpha_of, whole
 from fogproof.checks.diagnosis import likely_cause
 from fogproof.checks.draws import as_array
-from fogproof.checks.statistics.dependence import fingerprints
+from fogproof.checks.statistics.succession import fingerprints
 from fogproof.checks.statistics.tails import chi_square_above, normal_two_sided
 from fogproof.checks.subject import call
 from fogproof.checks.verdict import Finding, Outcome, Verdict

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from fogproof.checks.json_values import jsonable
 from fogproof.checks.quantities import CheckedQuantity, column
 from fogproof.checks.statistics.coverage import Coverage
-from fogproof.checks.statistics.dependence import Succession
 from fogproof.checks.statistics.moments import Moments
-from fogproof.checks.verdict import jsonable
+from fogproof.checks.statistics.succession import Succession
 from fogproof.contracts import Draws
 
 _TRACE = 12  # points of the running mean kept for the figure

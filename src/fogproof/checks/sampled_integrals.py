@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from fogproof.checks.mixture import MixtureTest
-from fogproof.checks.statistics.goodness import MISS
+from fogproof.checks.statistics.cells import MISS
 from fogproof.checks.statistics.tails import normal_quantile
 from fogproof.checks.streams import batch_generator
 from fogproof.checks.subject import call

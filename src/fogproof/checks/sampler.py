@@ -22,8 +22,9 @@ from fogproof.checks.declared import declared, unchecked
 from fogproof.checks.diagnosis import diagnosed
 from fogproof.checks.escalation import EARLY, Stage, doubtful, judged, stages, total_weight
 from fogproof.checks.figures import bins_figure, z_map_figure
-from fogproof.checks.prepared import Prepared, prepare
-from fogproof.checks.statistics.goodness import blocks
+from fogproof.checks.prepared import Prepared
+from fogproof.checks.preparing import prepare
+from fogproof.checks.statistics.cells import blocks
 from fogproof.checks.streams import batch_generator, batch_sizes
 from fogproof.checks.subject import Precision, Subject
 from fogproof.checks.suite import tests_of

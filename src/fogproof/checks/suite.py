@@ -16,21 +16,18 @@ from fogproof.checks.mixture import MixtureTest
 from fogproof.checks.normalisation import FLOOR
 from fogproof.checks.prepared import Prepared
 from fogproof.checks.statistics import labels
+from fogproof.checks.statistics.binomial import binomial
+from fogproof.checks.statistics.cells import blocks
+from fogproof.checks.statistics.chi_square import chi_square_along, joint
 from fogproof.checks.statistics.evenness import evenness_test
-from fogproof.checks.statistics.goodness import (
-    binomial,
-    blocks,
-    chi_square_along,
-    joint,
-    joint_fine,
-    kolmogorov,
-)
+from fogproof.checks.statistics.kolmogorov import kolmogorov
 from fogproof.checks.statistics.means import mean_test
 from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.statistics.repeats import repeats_test
 from fogproof.checks.statistics.scan import scan, scan_ends, scan_plane
 from fogproof.checks.statistics.serial import serial_test
 from fogproof.checks.statistics.smooth import cross, smooth
+from fogproof.checks.statistics.sparse_chi_square import joint_fine
 from fogproof.checks.subject import named
 from fogproof.checks.tally import Tally
 from fogproof.checks.verdict import Finding

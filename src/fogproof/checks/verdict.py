@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
-import numpy as np
-
+from fogproof.checks.json_values import jsonable
 from fogproof.errors import FogproofError, UnsupportedError
 from fogproof.text import p_value
 
@@ -88,7 +86,7 @@ class Finding:
     interval    where the true effect lies
     region      where the misfit is, and in which direction, in words
     cause       the likely class of error where it is rejected: "normalisation", "wrong measure", "atom", ...
-    lawless     True if the p-value holds whatever the law of the values
+    distribution_free     True if the p-value holds whatever the law of the values
     """
 
     check: str
@@ -104,7 +102,7 @@ class Finding:
     interval: EffectInterval | None = None
     region: tuple[str, ...] = ()
     cause: str = ""
-    lawless: bool = False
+    distribution_free: bool = False
 
     def located(self, region: str) -> Finding:
         """Return the finding with one more word on where the misfit is."""
@@ -246,21 +244,3 @@ def _line_of(finding: Finding) -> str:
     where = f"{where}." if where else ""
     size = f" Effect in {finding.interval}." if finding.interval and finding.outcome == "rejected" else ""
     return f"{finding.check}: {finding.message}.{where}{p}{size}"
-
-
-def jsonable(value: Any) -> Any:
-    """Return `value` with dataclasses, arrays and non-finite numbers in JSON's terms."""
-    if isinstance(value, (bool, str, int)) or value is None:
-        return value
-    if isinstance(value, (float, np.floating)):
-        number = float(value)
-        return number if math.isfinite(number) else str(number)
-    if isinstance(value, np.generic | np.ndarray):
-        return jsonable(value.tolist())
-    if hasattr(value, "__dataclass_fields__"):
-        return {name: jsonable(getattr(value, name)) for name in value.__dataclass_fields__}
-    if isinstance(value, dict):
-        return {str(key): jsonable(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [jsonable(item) for item in value]
-    return repr(value)

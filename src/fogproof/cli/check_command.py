@@ -6,10 +6,10 @@ import json
 
 import click
 
-from fogproof.checks.verdict import jsonable
+from fogproof.checks.json_values import jsonable
 from fogproof.cli.terminal import say
 from fogproof.cli.values import POSITIVE, PROBABILITY, SECONDS
-from fogproof.pipe.check import Outcome, Settings, check_file, check_program
+from fogproof.pipe.check import Checked, Settings, check_file, check_program
 from fogproof.pipe.process import Timeouts
 
 _CODES = {"not rejected": 0, "rejected": 1, "inconclusive": 3}
@@ -70,7 +70,7 @@ def command(
     return _CODES[outcome.verdict.outcome]
 
 
-def _tell(outcome: Outcome, as_json: bool) -> None:
+def _tell(outcome: Checked, as_json: bool) -> None:
     verdict = outcome.verdict
     if as_json:
         say(json.dumps(jsonable({**verdict.to_dict(), "notes": outcome.notes, "stderr": outcome.said})))

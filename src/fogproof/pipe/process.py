@@ -11,7 +11,6 @@ import contextlib
 import os
 import select
 import shlex
-import signal
 import subprocess
 import time
 from collections import deque
@@ -19,7 +18,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 
 from fogproof.children import start
-from fogproof.errors import InvalidInputError, SubjectError, UnsupportedError
+from fogproof.errors import InvalidInputError, UnsupportedError
+from fogproof.pipe.faults import BROKEN, ProgramError, end_of, quoted
 from fogproof.text import one_line
 from fogproof.validate import time_limit
 
@@ -28,16 +28,6 @@ _CHUNK = 1 << 16
 _PIPE = 1 << 20  # bytes that a pipe may hold, where the system lets us choose
 _SETPIPE = 1031  # Linux: F_SETPIPE_SZ
 _LINE = 1 << 16  # longest line
-BROKEN = "broken protocol"
-"""The class of a fault that is neither an end nor a silence."""
-
-
-class ProgramError(SubjectError):
-    """The program died, hung, or broke the protocol; the message holds what it printed, `cause` is the class of the fault."""
-
-    def __init__(self, message: str, cause: str) -> None:
-        super().__init__(message, "--exec")
-        self.cause = cause
 
 
 @dataclass(frozen=True)
@@ -91,11 +81,11 @@ class Process:
         deadline = time.monotonic() + seconds
         while b"\n" not in self._ahead:
             if len(self._ahead) > _LINE:
-                raise self.broken(f"wrote {_quoted(self._ahead)} and no end of line where {awaited} was due")
+                raise self.broken(f"wrote {quoted(self._ahead)} and no end of line where {awaited} was due")
             self._ahead += self._some(deadline, seconds, awaited, _LINE)
         line, _, self._ahead = self._ahead.partition(b"\n")
         if len(line) > _LINE:
-            raise self.broken(f"wrote {_quoted(line)}, a line of {len(line)} bytes, where {awaited} was due")
+            raise self.broken(f"wrote {quoted(line)}, a line of {len(line)} bytes, where {awaited} was due")
         return line.removesuffix(b"\r")
 
     def lines(self, count: int, seconds: float, awaited: str) -> list[bytes]:
@@ -105,7 +95,7 @@ class Process:
             parts.append(self._some(deadline, seconds, f"{awaited} ({found} of {count} lines came)", _CHUNK))
             found, size = found + parts[-1].count(b"\n"), size + len(parts[-1])
             if size > _LINE * (found + 1):
-                raise self.broken(f"wrote {_quoted(parts[1])} and no end of line where {awaited} was due")
+                raise self.broken(f"wrote {quoted(parts[1])} and no end of line where {awaited} was due")
         *lines, self._ahead = b"".join(parts).split(b"\n", count)
         return lines
 
@@ -137,7 +127,7 @@ class Process:
         """Return the error for what a program did ("the program ..."), with what stands on stderr."""
         self._listen()
         if self._popen.poll() is not None and cause != "dies":
-            what = f"{what}, and {_end_of(self._popen.returncode)}"
+            what = f"{what}, and {end_of(self._popen.returncode)}"
         said = f"; on stderr: {self.said[:1000]}" if self.said else "; it wrote nothing to stderr"
         after = f" (after {self.answers} answers)" if self.answers else ""
         return ProgramError(f"the program {what}{after}{said}", cause)
@@ -179,7 +169,7 @@ class Process:
         elif code is None:
             self.note = f"it did not end within {self.timeouts.end:g} s of the end of its input, and was killed"
         elif code and before is None:
-            self.note = f"it {_end_of(code)} after the end of its input"
+            self.note = f"it {end_of(code)} after the end of its input"
 
     def _some(self, deadline: float, seconds: float, awaited: str, most: int) -> bytes:
         while True:
@@ -263,7 +253,7 @@ class Process:
             self._popen.wait(self.timeouts.end)
         self._listen()
         code = self._popen.poll()
-        what = "closed its output and runs on" if code is None else _end_of(code)
+        what = "closed its output and runs on" if code is None else end_of(code)
         return self.broken(f"{what} where {awaited} was due", "dies")
 
 
@@ -275,20 +265,6 @@ def _words(command: str | Sequence[str]) -> list[str]:
     if not words or not words[0]:
         raise InvalidInputError("the command is empty", "--exec")
     return words
-
-
-def _end_of(code: int) -> str:
-    """Return in words how a process ended."""
-    if code >= 0:
-        return f"ended with exit code {code}"
-    with contextlib.suppress(ValueError):
-        return f"was killed by {signal.Signals(-code).name}"
-    return f"was killed by signal {-code}"
-
-
-def _quoted(data: bytes) -> str:
-    text = one_line(data[:80].decode("utf-8", "replace"))
-    return f"{text!r}{'...' if len(data) > 80 else ''}"
 
 
 def _widen(pipe: int) -> None:

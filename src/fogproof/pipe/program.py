@@ -8,7 +8,8 @@ from types import TracebackType
 import numpy as np
 
 from fogproof.pipe.blocks import DTYPES, bytes_of, encoded, from_lines
-from fogproof.pipe.process import BROKEN, Process, ProgramError, Timeouts
+from fogproof.pipe.faults import BROKEN, ProgramError
+from fogproof.pipe.process import Process, Timeouts
 from fogproof.pipe.protocol import BrokenLineError, Greeting, read_greeting, request_line, require_answer
 
 

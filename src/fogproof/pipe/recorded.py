@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from fogproof.checks import Verdict
-from fogproof.checks.prepared import PILOT
+from fogproof.checks.pilot import PILOT
 from fogproof.checks.sampler import SamplerCheck
 from fogproof.checks.subject import Subject
 from fogproof.contracts import Draw

@@ -10,7 +10,7 @@ import io
 from collections.abc import Iterable
 from typing import Any
 
-from fogproof.checks.verdict import jsonable
+from fogproof.checks.json_values import jsonable
 from fogproof.errors import InvalidValueError
 from fogproof.stability.formula import Formula
 from fogproof.stability.measuring import OURS, FormError

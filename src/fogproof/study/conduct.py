@@ -9,12 +9,14 @@ from pathlib import Path
 from typing import Any
 
 from fogproof.study.cells import cells_of, prepare
+from fogproof.study.csv_table import table
+from fogproof.study.environment import environment
 from fogproof.study.executors import open_workers
 from fogproof.study.files import Study
 from fogproof.study.history import compare
 from fogproof.study.plan import batches_of
 from fogproof.study.progress import Progress
-from fogproof.study.record import Circumstances, environment, make_record, read_results, table
+from fogproof.study.record import Circumstances, make_record, read_results
 from fogproof.study.run import draw_missing
 from fogproof.study.store import opened
 

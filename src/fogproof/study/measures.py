@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -14,13 +14,12 @@ from fogproof.contracts import Reference
 from fogproof.study.aggregate import Level, pooled
 from fogproof.study.cells import Cell
 from fogproof.study.convergence import Estimate, Floor, Order, Z, floor_of, order_of, rmse
-from fogproof.study.judgement import Judged, excess, inherited, judge, out_of_range, resolution_of
+from fogproof.study.error_curve import error_curve, reaches_of, stays_for_good
+from fogproof.study.judgement import Judged, inherited, judge, out_of_range, resolution_of
 from fogproof.study.methods.table import kind_of, options_of
-from fogproof.study.reaching import TARGETS, ErrorOverTime, Reach, reach_of, variance_law
+from fogproof.study.reaching import Reach
+from fogproof.study.scatter import degrees_of_freedom, kurtosis, spread
 from fogproof.study.speed import Times, times_of
-
-_NO_LAW = 0.001
-"""Measured errors so improbable under sqrt(variance / count) are taken as they are: realisations in a call depend on each other."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,9 +57,9 @@ def measure(cell: Cell, levels: Sequence[Level], alpha: float, twin: Measured | 
     errors, times = [_rmse(cell, level, data, error) for level in levels], times_of(levels)
     order, floor = _fall(cell, levels, errors, data, value, error)
     bias = _bias(cell, levels, data, error)
-    stays = _stays(judged, bias, floor)
-    curve = _curve(cell, levels, errors, times, data, variance, judged, stays)
-    reaches = () if curve is None else _reaches(curve, abs(value), error)
+    stays = stays_for_good(judged, bias, floor)
+    curve = error_curve(cell, levels, errors, times, data, variance, judged, stays)
+    reaches = () if curve is None else reaches_of(curve, abs(value), error)
     record = {
         "name": cell.name,
         "kind": kind_of(cell.method),
@@ -107,16 +106,7 @@ def _rmse(cell: Cell, level: Level, data: Moments, error: float) -> Estimate:
     if cell.method.axis != "samples":
         size = float(np.abs(errors).max())
         return Estimate(size, max(size - error, 0.0), size + error)
-    return rmse(errors, _kurtosis(cell, data) / level.count, error)
-
-
-def _kurtosis(cell: Cell, data: Moments) -> float:
-    return 0.0 if cell.points == "sobol" else excess(data)
-
-
-def _freedom(cell: Cell, level: Level, data: Moments) -> float:
-    """Return the degrees of freedom of a level's mean square."""
-    return len(level.rows) / (1 + max(_kurtosis(cell, data) / level.count, 0.0) / 2)
+    return rmse(errors, kurtosis(cell, data) / level.count, error)
 
 
 def _fall(
@@ -129,7 +119,7 @@ def _fall(
     size = np.array([e.value for e in errors])
     steps = cell.method.axis == "steps"
     hidden = np.array([resolution_of(value, error, level.count if steps else 1) for level in levels])
-    freedom = np.array([math.inf if steps else _freedom(cell, level, data) for level in levels])
+    freedom = np.array([math.inf if steps else degrees_of_freedom(cell, level, data) for level in levels])
     return order_of(counts, size, freedom, hidden), floor_of(counts, size, hidden) if steps else None
 
 
@@ -152,7 +142,7 @@ def _bias(cell: Cell, levels: Sequence[Level], data: Moments, error: float) -> E
 def _variance(cell: Cell, data: Moments, variance: Reference | None) -> dict[str, Any] | None:
     if cell.points == "sobol" or data.n < 2:
         return None
-    reach = Z * _spread(data)
+    reach = Z * spread(data)
     measured = data.variance
     return {
         "measured": measured,
@@ -162,11 +152,6 @@ def _variance(cell: Cell, data: Moments, variance: Reference | None) -> dict[str
         "exact_error": None if variance is None else float(variance.error),
         "method": None if variance is None else variance.method,
     }
-
-
-def _spread(data: Moments) -> float:
-    """Return the standard error of the logarithm of the variance."""
-    return math.sqrt(max(excess(data) + 2, 0.0) / max(data.n, 1))
 
 
 def _count(cell: Cell, level: Level, error: Estimate, variance: Reference | None) -> dict[str, Any]:
@@ -182,68 +167,6 @@ def _count(cell: Cell, level: Level, error: Estimate, variance: Reference | None
         "rmse_high": error.high,
         "predicted": predicted,
     }
-
-
-def _curve(
-    cell: Cell,
-    levels: Sequence[Level],
-    errors: Sequence[Estimate],
-    times: Sequence[Times],
-    data: Moments,
-    variance: Reference | None,
-    judged: Judged,
-    stays: float,
-) -> ErrorOverTime | None:
-    """Return the error against time; None where nothing was drawn, or not every realisation is a number."""
-    if not levels or any(level.bad for level in levels):
-        return None
-    counts = np.array([level.count for level in levels])
-    law = None
-    if (
-        cell.method.axis == "samples"
-        and cell.points == "random"
-        and judged.outcome != "rejected"
-        and not judged.infinite
-    ):
-        exact = variance is not None and 0 <= float(variance.error) < 1e-6 * float(variance.value) < math.inf
-        law = variance_law(
-            float(variance.value) if exact and variance is not None else data.variance, _spread(data), exact
-        )
-        law = law if data.m2 > 0 and _follows(law.value, cell, levels, errors, data) else None
-    return ErrorOverTime(counts, errors, times, law, stays)
-
-
-def _stays(judged: Judged, bias: Estimate | None, floor: Floor | None) -> float:
-    """Return the error that is there for good: a march's floor where it has met it, or the least bias a rejected one can have."""
-    if floor is not None:
-        return floor.error if floor.reached else 0.0
-    if judged.outcome != "rejected" or bias is None or not bias.low * bias.high > 0:
-        return 0.0
-    return min(abs(bias.low), abs(bias.high))
-
-
-def _follows(variance: float, cell: Cell, levels: Sequence[Level], errors: Sequence[Estimate], data: Moments) -> bool:
-    """Return whether the errors that were measured are those of independent realisations with this variance."""
-    from scipy.special import chdtr, chdtrc
-
-    freedom = np.array([_freedom(cell, level, data) for level in levels])
-    squares = np.array([e.value**2 * level.count / variance for e, level in zip(errors, levels, strict=True)])
-    statistic, total = float(np.sum(freedom * squares)), float(np.sum(freedom))
-    return 2 * min(float(chdtr(total, statistic)), float(chdtrc(total, statistic))) >= _NO_LAW
-
-
-def _reaches(curve: ErrorOverTime, value: float, hidden: float) -> tuple[Reach, ...]:
-    """Return the times to `TARGETS`; () if the reference is 0 or known too coarsely."""
-    if not value > 0 or hidden > 0.1 * TARGETS[-1] * value:
-        return ()
-    reaches: list[Reach] = []
-    for error in TARGETS:
-        reach = reach_of(curve, error * value, error, hidden)
-        sooner = reach.reached and reaches and reach.times.estimate.value < reaches[-1].times.estimate.value
-        reaches.append(
-            replace(reach, times=reaches[-1].times) if sooner else reach
-        )  # a smaller error takes no less time
-    return tuple(reaches)
 
 
 def _speed(cell: Cell, levels: Sequence[Level], times: Sequence[Times], reaches: Sequence[Reach]) -> dict[str, Any]:

@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-import csv
 import hashlib
 import importlib.metadata
-import io
 import json
 import math
-import os
-import platform
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from typing import Any
 
-from fogproof.checks.verdict import jsonable
+from fogproof.checks.json_values import jsonable
 from fogproof.errors import InvalidInputError, shorten
 from fogproof.input_files import parse_json, read_text
 from fogproof.plan import plan
@@ -24,6 +19,7 @@ from fogproof.scene import Scattering, Scene
 from fogproof.study.aggregate import levels_of
 from fogproof.study.cells import Cell
 from fogproof.study.convergence import CONFIDENCE
+from fogproof.study.environment import environment
 from fogproof.study.files import Study, StudyScene
 from fogproof.study.judgement import tests_of
 from fogproof.study.measures import Measured, measure
@@ -31,14 +27,8 @@ from fogproof.study.plan import Batch, Batches
 from fogproof.study.question import UNITS
 from fogproof.study.ranking import ranked
 from fogproof.study.stored_batches import Store
-from fogproof.text import spreadsheet_cell, state
+from fogproof.text import state
 from fogproof.verify import SCHEMA
-
-COLUMNS = (
-    *("scene", "estimator", "points", "status", "count", "replicates", "mean", "reference", "reference_error"),
-    *("rmse", "rmse_low", "rmse_high", "predicted", "seconds", "seconds_low", "seconds_high"),
-    *("variance", "exact_variance", "order", "relative"),
-)
 
 
 @dataclass(frozen=True)
@@ -192,57 +182,6 @@ def _failure(row: tuple[int, int, str], cells: Sequence[Cell], batches: Sequence
     cell = cells[batch.cell]
     place = {"scene": cell.scene.name, "estimator": cell.name, "count": batch.size}
     return {"batch": index, **place, "attempts": attempts, "error": error}
-
-
-def environment() -> dict[str, Any]:
-    """Return what the draws may depend on besides the study, and the code they were made with."""
-    packages = ("numpy", "scipy", "numba")
-    versions = {package: importlib.metadata.version(package) for package in packages}
-    machine = {"machine": platform.machine(), "platform": platform.platform(terse=True), "cores": os.cpu_count()}
-    return {"python": platform.python_version(), **versions, **machine, "code": _code()}
-
-
-@cache
-def _code() -> str:
-    """Return a sum of the sources of fogproof: batches of two states of the code should not be mixed."""
-    root, words = Path(__file__).parents[1], hashlib.blake2b(digest_size=10)
-    for folder in ("analytic", "estimators", "scene", "study"):
-        for file in sorted((root / folder).rglob("*.py")):
-            words.update(file.relative_to(root).as_posix().encode() + file.read_bytes())
-    return words.hexdigest()
-
-
-def table(record: dict[str, Any]) -> str:
-    """Return `results.csv`: a row for each count of each estimator."""
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\r\n")
-    writer.writerow(COLUMNS)
-    for scene in record["scenes"]:
-        for estimator in scene["estimators"]:
-            writer.writerows(_rows(scene, estimator))
-    return out.getvalue()
-
-
-def _rows(scene: dict[str, Any], estimator: dict[str, Any]) -> Iterable[list[Any]]:
-    speed, variance = estimator["speed"], estimator["variance"] or {}
-    for number, count in enumerate(estimator["counts"]):
-        values = {
-            **count,
-            "scene": scene["name"],
-            "estimator": estimator["name"],
-            "points": estimator["points"],
-            "status": estimator["status"],
-            "reference": scene["reference"]["value"],
-            "reference_error": scene["reference"]["error"],
-            "seconds": speed["counts"][number]["seconds"],
-            "seconds_low": speed["counts"][number]["low"],
-            "seconds_high": speed["counts"][number]["high"],
-            "variance": variance.get("measured"),
-            "exact_variance": variance.get("exact"),
-            "order": (estimator["order"] or {}).get("value"),
-            "relative": (speed["relative"] or {}).get("value"),
-        }
-        yield [spreadsheet_cell(values[name]) for name in COLUMNS]
 
 
 def read_results(path: Path) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from fogproof.catalogue import Case
-from fogproof.checks.verdict import jsonable
+from fogproof.checks.json_values import jsonable
 from fogproof.oracle_error import oracle_errors
 from fogproof.plan import plan, scene_of
 from fogproof.text import state, unfinished

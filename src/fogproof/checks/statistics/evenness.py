@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fogproof.checks.statistics.goodness import MISS
+from fogproof.checks.statistics.cells import MISS
 from fogproof.checks.verdict import Finding, Resolution
 
 GROUPS = 32

@@ -16,7 +16,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fogproof.checks.statistics.goodness import MISS, pooled, unevenness
+from fogproof.checks.statistics.cells import MISS, unevenness
+from fogproof.checks.statistics.chi_square import pooled
 from fogproof.checks.statistics.tails import chi_square_detected, gamma_above, normal_quantile
 from fogproof.checks.verdict import Finding, Outcome, Resolution
 

@@ -12,7 +12,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fogproof.checks.statistics.goodness import MISS
+from fogproof.checks.statistics.cells import MISS
 from fogproof.checks.statistics.tails import binomial_at_most, normal_quantile, poisson_at_least
 from fogproof.checks.subject import Precision
 from fogproof.checks.verdict import Finding, Resolution

@@ -13,7 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from fogproof.checks.density.grid import GridPlane, Marginal
-from fogproof.checks.statistics.goodness import MISS, between, binomial_p, blocks, deviances, nothing_counted
+from fogproof.checks.statistics.binomial import binomial_p
+from fogproof.checks.statistics.cells import MISS, between, blocks, nothing_counted
+from fogproof.checks.statistics.chi_square import deviances
 from fogproof.checks.statistics.tails import binomial_interval
 from fogproof.checks.verdict import EffectInterval, Finding, Resolution
 

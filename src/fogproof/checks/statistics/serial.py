@@ -12,7 +12,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from fogproof.checks.statistics.goodness import MISS
+from fogproof.checks.statistics.cells import MISS
 from fogproof.checks.statistics.tails import normal_quantile
 from fogproof.checks.verdict import Finding, Outcome, Resolution
 

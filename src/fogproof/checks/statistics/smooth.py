@@ -13,7 +13,7 @@ import numpy as np
 
 from fogproof.checks.density.curve import legendre
 from fogproof.checks.density.grid import GridPlane, Marginal
-from fogproof.checks.statistics.goodness import EXPLAINED, HIDDEN, MISS, nothing_counted
+from fogproof.checks.statistics.cells import EXPLAINED, HIDDEN, MISS, nothing_counted
 from fogproof.checks.statistics.tails import chi_square_above, chi_square_detected
 from fogproof.checks.verdict import Finding, Resolution
 

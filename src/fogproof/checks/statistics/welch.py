@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import math
 
-from fogproof.checks.statistics.goodness import MISS, binomial_p
+from fogproof.checks.statistics.binomial import binomial_p
+from fogproof.checks.statistics.cells import MISS
 from fogproof.checks.statistics.means import LARGEST_CORRECTION, LARGEST_SHARE
 from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.statistics.tails import normal_quantile, student_two_sided

@@ -1,4 +1,4 @@
-"""Where rays meet balls and voxels, and directions about an axis: from afar, grazing, along faces, edges and corners."""
+"""Optical thickness of grids whose rays run along faces and edges, through corners, and come from afar."""
 
 from __future__ import annotations
 
@@ -7,82 +7,11 @@ from itertools import product
 import numpy as np
 
 from fogproof import analytic
-from fogproof.analytic.shapes import ball as oracle_ball
 from fogproof.estimators import regular_tracking
-from fogproof.estimators.airlight.around import around as towards
-from fogproof.estimators.lights import sphere as sphere_light
-from fogproof.estimators.phase.frames import turn
-from fogproof.estimators.shapes import ball
-from fogproof.scene import Ball, Ray, VoxelGrid
-from fogproof.scene.lights import SphereLight
-from fogproof.stability.axes import decades, including, of, to_one
+from fogproof.scene import Ray, VoxelGrid
+from fogproof.stability.axes import decades, including, of
 from fogproof.stability.exact import flint
 from fogproof.stability.formula import Formula, HardRegion, Naive
-
-AFAR = decades(2.0, 1e8)
-
-
-# --- balls ----------------------------------------------------------------------------------------------------------------------
-
-
-def unit_ball():
-    return Ball((0.0, 0.0, 0.0), 1.0)
-
-
-def aligned(far, beside):
-    """A ray along +z that passes the centre at the distance `beside`."""
-    zero, one = np.zeros_like(far), np.ones_like(far)
-    return {"ox": beside, "oy": zero, "oz": -far, "dx": zero, "dy": zero, "dz": one}
-
-
-def slanting(far, beside):
-    """The same along a direction that is a unit vector but for rounding."""
-    dx, dy, dz = (np.full_like(far, v) for v in (0.48, 0.6, 0.64))
-    return {
-        "ox": 0.8 * beside - far * dx,
-        "oy": -far * dy,
-        "oz": -0.6 * beside - far * dz,
-        "dx": dx,
-        "dy": dy,
-        "dz": dz,
-    }
-
-
-def true_entrance(ox, oy, oz, dx, dy, dz):
-    """The smaller root of |o + t d|^2 = 1."""
-    a, b = dx * dx + dy * dy + dz * dz, ox * dx + oy * dy + oz * dz
-    square = b * b - a * (ox * ox + oy * oy + oz * oz - 1)
-    return (-b - square.sqrt()) / a if square > 0 else flint().arb.pos_inf()
-
-
-def lines(ox, oy, oz, dx, dy, dz):
-    return np.stack([ox, oy, oz]), np.stack([dx, dy, dz])
-
-
-def quadratic(ox, oy, oz, dx, dy, dz):
-    a, b = dx * dx + dy * dy + dz * dz, 2 * (ox * dx + oy * dy + oz * dz)
-    square = b * b - 4 * a * (ox * ox + oy * oy + oz * oz - 1)
-    return np.where(square > 0, (-b - np.sqrt(square)) / (2 * a), np.inf)
-
-
-def met(**line):
-    light = SphereLight((0.0, 0.0, 0.0), 1.0, 1.0)
-    origin, direction = lines(**line)
-    return np.array([sphere_light.met(light, origin[:, i], direction[:, i]) for i in range(origin.shape[1])])
-
-
-def oracle_enters(**line):
-    origin, direction = lines(**line)
-    return oracle_ball.through(unit_ball(), origin.T, direction.T, 0.0)[0]
-
-
-PASSING = (
-    HardRegion("from afar, grazing", {"far": AFAR, "beside": to_one(1e-12, 1e-9)}, derived=aligned),
-    HardRegion("from afar, slanting", {"far": AFAR, "beside": to_one(1e-6, 1e-9)}, derived=slanting),
-)
-
-
-# --- voxels ---------------------------------------------------------------------------------------------------------------------
 
 N = 4
 
@@ -207,90 +136,7 @@ VOXELS = (
     HardRegion("through corners", {"y": LITTLE, "z": LITTLE}, derived=diagonal),
     HardRegion("from 1e8 away", {"far": decades(1e-3, 1e8), "y": decades(1e-3, 0.9)}, derived=oblique),
 )
-
-
-# --- directions -----------------------------------------------------------------------------------------------------------------
-
-
-def axes_near_the_pole(off, versine):
-    """Axes beside -z, as far off it as rounding lets a unit vector be."""
-    return {"ax": off, "az": -np.sqrt(1 - off * off), "versine": versine}
-
-
-def length_by(frame):
-    def measured(ax, az, versine):
-        w = frame(ax, az, versine).astype(np.longdouble)
-        return np.sqrt(np.sum(w * w, axis=0)).astype(float)
-
-    return measured
-
-
-def by_reflection(ax, az, versine):
-    found = np.empty((len(ax), 3))
-    for i in range(len(ax)):
-        axis = (float(ax[i]), 0.0, float(az[i]))
-        one = slice(i, i + 1)
-        turn(axis, versine[one].copy(), 2 - versine[one], np.array([0.3]), out=found[one])
-    return found.T
-
-
-def by_duff(ax, az, versine):
-    axis = np.stack([ax, np.zeros_like(ax), az])
-    return towards(axis, versine, np.full_like(ax, 0.6 * np.pi))
-
-
-def by_frisvad(ax, az, versine):
-    a = 1 / (1 + az)
-    first = np.stack([1 - ax * ax * a, np.zeros_like(ax), -ax])
-    second = np.stack([np.zeros_like(ax), np.ones_like(ax), np.zeros_like(ax)])
-    sine, phi = np.sqrt(versine * (2 - versine)), 0.6 * np.pi
-    axis = np.stack([ax, np.zeros_like(ax), az])
-    return sine * np.cos(phi) * first + sine * np.sin(phi) * second + (1 - versine) * axis
-
-
-def true_length(ax, az, versine):
-    """Turned by a rotation, a unit vector keeps the length of the axis, but for the part across."""
-    return flint().arb(1)
-
-
-POLES = (
-    HardRegion(
-        "axes beside -z",
-        {"off": including(decades(1e-16, 0.9), 0.0), "versine": including(decades(1e-12, 1.0), 0.0)},
-        derived=axes_near_the_pole,
-    ),
-)
-FRISVAD = Naive("a frame divided by 1 + z", "Frisvad 2012, before Duff et al. 2017", length_by(by_frisvad))
-
 FORMULAS = [
-    Formula(
-        "geometry/ball_enter",
-        "Distance at which a ray enters a ball",
-        "estimators.LitMedium",
-        lambda **line: ball.through(unit_ball(), *lines(**line))[0],
-        true_entrance,
-        PASSING,
-        bound=3.0,
-        naive=(Naive("(-b - sqrt(b^2 - 4 a c))/(2 a)", "textbooks and most renderers", quadratic),),
-    ),
-    Formula(
-        "geometry/ball_enter_oracle",
-        "Distance at which the oracle lets a ray enter a ball",
-        "analytic.radiance",
-        oracle_enters,
-        true_entrance,
-        PASSING,
-        bound=2.0,
-    ),
-    Formula(
-        "geometry/sphere_light",
-        "Distance at which a ray meets a shining sphere",
-        "estimators.LitMedium",
-        met,
-        true_entrance,
-        PASSING,
-        bound=3.0,
-    ),
     Formula(
         "geometry/voxels_nearest",
         "Optical thickness of a grid, walked cell by cell",
@@ -329,25 +175,5 @@ FORMULAS = [
         true_trilinear,
         VOXELS,
         size=0.34,
-    ),
-    Formula(
-        "geometry/direction_length",
-        "Length of a direction turned about an axis by a reflection",
-        "estimators.Directions",
-        length_by(by_reflection),
-        true_length,
-        POLES,
-        bound=5.0,
-        naive=(FRISVAD,),
-    ),
-    Formula(
-        "geometry/towards_length",
-        "Length of a direction to a light about an axis",
-        "estimators.LitMedium",
-        length_by(by_duff),
-        true_length,
-        POLES,
-        bound=2.0,
-        naive=(FRISVAD,),
     ),
 ]
