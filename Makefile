@@ -7,6 +7,9 @@ BIN    := $(VENV)/bin
 # Runs keep all cores busy with work of their own; threads inside small matrix products would only wait for each other.
 export OPENBLAS_NUM_THREADS := 1
 
+# Tests and runs start hundreds of processes: each would compile all of the sources anew.
+unexport PYTHONDONTWRITEBYTECODE
+
 .DEFAULT_GOAL := help
 .PHONY: help verify gallery study test lint format calibrate zoo repeat families oracle-docs docs sdist fuzz-oracle oracle-hard kill-study torture findings languages try-wheel golden bench mutants mutants-sample clean
 

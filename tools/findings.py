@@ -12,17 +12,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-import mpmath
-import numpy as np
+from findings_of_phases import ahead_of_sggx, frame_of_sggx
+from findings_of_surfaces import centre, fiber, masking, spike_of_hair, underground, widened
 from findings_of_volumes import missing_thickness
 
-from fogproof.adapters.mitsuba import MitsubaBSDF, MitsubaPhase, MitsubaWarp, load
-from fogproof.catalogue.mitsuba.builders import direction
-from fogproof.catalogue.mitsuba.phases import sggx, sggx_plugin
-from fogproof.domains import UnitHemisphere, UnitSphere, UnitSquare
+from fogproof.adapters.mitsuba import load
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "findings.md"
-SEED = 20
 
 
 @dataclass(frozen=True)
@@ -34,172 +30,6 @@ class Found:
     evidence: Callable[[], str]
     cause: str
     command: str
-
-
-def sphere(mu_points: int = 400, phi_points: int = 400, low: float = -1.0) -> tuple[np.ndarray, np.ndarray]:
-    """Return directions and weights of a product rule, Gauss-Legendre in mu on [low, 1], midpoints in phi."""
-    mu, weight = np.polynomial.legendre.leggauss(mu_points)
-    mu, weight = low + (mu + 1) * (1 - low) / 2, weight * (1 - low) / 2
-    phi = (np.arange(phi_points) + 0.5) * 2 * np.pi / phi_points
-    sine = np.sqrt(1 - mu[:, None] ** 2)
-    x = np.stack(np.broadcast_arrays(sine * np.cos(phi), sine * np.sin(phi), mu[:, None]), -1).reshape(-1, 3)
-    return x, np.repeat(weight, phi_points) * 2 * np.pi / phi_points
-
-
-def uniforms(n: int, k: int) -> np.ndarray:
-    """Return (n, k) single-precision uniforms."""
-    return np.random.default_rng(SEED).random((n, k), dtype=np.float32)
-
-
-def frame_of_sggx() -> str:
-    """Compare the mean sampled direction with that of the paper's density."""
-    flake, axis = (1.0, 0.6, 0.3, 0.2, 0.1, -0.15), (2 / 7, -3 / 7, 6 / 7)
-    x, weight = sphere()
-    density = sggx(flake, axis)(x + 1e-12).value
-    exact = (weight * density) @ x
-    drawn = MitsubaPhase(sggx_plugin(flake), axis).sample(uniforms(1_000_000, 3)).x
-    z = (drawn.mean(0) - exact) / (drawn.std(0) / 1000)
-    pdf = MitsubaPhase(sggx_plugin(flake), axis).pdf(x)
-    return (
-        f"The density of Heitz et al. (2015), written anew, integrates to {weight @ density:.5f} and agrees with `eval_pdf` to"
-        f" {np.max(np.abs(pdf / density - 1)):.1g}. Its mean direction is {vector(exact)}; that of 10^6 samples is"
-        f" {vector(drawn.mean(0))}, off by {vector(z, 0)} standard errors."
-    )
-
-
-def ahead_of_sggx() -> str:
-    """Ask for the density exactly straight ahead."""
-    phase = MitsubaPhase(sggx_plugin((1.0, 1.0, 0.1, 0.0, 0.0, 0.0)))
-    ahead, beside = phase.pdf(np.array([[0.0, 0.0, 1.0], [1e-3, 0.0, 1.0]]))
-    return (
-        f"`eval_pdf` is {ahead:g} at wo = -wi and {beside:.4g} at an angle of 0.001; `sample` returns such directions."
-    )
-
-
-def spike_of_hair() -> str:
-    """Count samples whose azimuth is 0 exactly."""
-    wi = np.array((0.9, 0.1, 0.3)) / np.linalg.norm((0.9, 0.1, 0.3))
-    hair = MitsubaBSDF({"type": "hair"}, tuple(wi.tolist()))
-    draw = hair.sample(uniforms(2_000_000, 3))
-    exactly = np.abs(np.arctan2(draw.x[:, 1], draw.x[:, 0])) < 1e-6
-    x, weight = sphere(2000, 4)
-    mu = x[::4, 2]
-    sine = np.sqrt(1 - mu * mu)
-    band = 2e-6 * float(np.sum(weight[::4] * 4 / (2 * np.pi) * hair.pdf(np.stack([sine, 0 * mu, mu], -1))))
-    return f"Of 2 10^6 samples {np.count_nonzero(exactly)} have |azimuth| < 1e-6; the pdf's mass there is {band:.1g}."
-
-
-def fiber() -> str:
-    """Compare the warp's integral with mpmath's, with the true Bessel function and with a term halved."""
-    rows = []
-    for kappa in (20.0, 200.0):
-        warp = MitsubaWarp(
-            "square_to_rough_fiber", UnitSphere(), later=((0.6, 0.0, 0.8), (1.0, 0.0, 0.0), kappa), dimensions=3
-        )
-        x, weight = sphere(600, 600)
-        true, halved = (fiber_integral(kappa, bad) for bad in (False, True))
-        rows.append(
-            f"kappa = {kappa:g}: {weight @ warp.pdf(x):.5f}, true {true:.6f}, with the term halved {halved:.5f}"
-        )
-    return f"Integral of the pdf, by a product rule, and by mpmath over the latitude: {'; '.join(rows)}."
-
-
-def fiber_integral(kappa: float, halved: bool) -> float:
-    """Return the integral of the longitudinal scattering function of d'Eon et al. (2011), by mpmath."""
-    across, along = mpmath.mpf("0.8"), mpmath.mpf("0.6")
-
-    def value(theta: mpmath.mpf) -> mpmath.mpf:
-        x = kappa * across * mpmath.cos(theta)
-        bessel = mpmath.besseli(0, x)
-        if halved and x > 12:
-            bessel = mpmath.exp(x + (-mpmath.log(2 * mpmath.pi * x) + 1 / (8 * x)) / 2)
-        return (
-            kappa
-            / (2 * mpmath.sinh(kappa))
-            * mpmath.exp(-kappa * along * mpmath.sin(theta))
-            * bessel
-            * mpmath.cos(theta)
-        )
-
-    cuts = np.linspace(-np.pi / 2, np.pi / 2, 41).tolist()
-    return float(mpmath.quad(value, cuts))
-
-
-def masking() -> str:
-    """Compare integral over share of valid samples with the ratio of the two masking functions."""
-    rows = []
-    for degrees, alpha in ((80.0, 0.3), (50.0, 0.7), (80.0, 0.7)):
-        plugin = {"type": "roughconductor", "distribution": "beckmann", "alpha": alpha}
-        bsdf = MitsubaBSDF(plugin, direction(degrees, 25.0))
-        x, weight = sphere(400, 400, 0.0)
-        n = 4_000_000
-        valid = float(np.mean(bsdf.sample(uniforms(n, 3)).valid))
-        a = 1 / (mpmath.mpf(alpha) * mpmath.tan(mpmath.radians(degrees)))
-        exact = 1 / (1 + (mpmath.erf(a) - 1) / 2 + mpmath.exp(-a * a) / (2 * a * mpmath.sqrt(mpmath.pi)))
-        walter = (3.535 * a + 2.181 * a**2) / (1 + 2.276 * a + 2.577 * a**2) if a < 1.6 else mpmath.mpf(1)
-        error = np.sqrt((1 - valid) / valid / n)
-        measured = float(weight @ bsdf.pdf(x)) / valid
-        rows.append(
-            f"{degrees:g} degrees, alpha {alpha:g}: {measured:.5f} +- {error:.5f}, predicted {float(walter / exact):.5f}"
-        )
-    return (
-        "Integral of the pdf over the share of valid samples, and the ratio of Walter et al.'s rational approximation to the exact"
-        f" masking function (mpmath): {'; '.join(rows)}."
-    )
-
-
-def widened() -> str:
-    """Compare eval / pdf / weight where the microfacet is the surface with the squared factor of widening."""
-    rows = []
-    for degrees in (50.0, 80.0):
-        plugin = {
-            "type": "roughdielectric",
-            "distribution": "ggx",
-            "alpha": 0.4,
-            "sample_visible": False,
-            "int_ior": 1.5,
-        }
-        bsdf = MitsubaBSDF(plugin, direction(degrees, 25.0))
-        draw = bsdf.sample(np.array([[0.0, 0.0, 0.0], [0.999, 0.0, 0.0]], dtype=np.float32))
-        assert draw.weight is not None
-        ratio = bsdf.eval(draw.x)[:, 0] / bsdf.pdf(draw.x) / draw.weight[:, 0]
-        predicted = (1.2 - 0.2 * np.sqrt(np.cos(np.radians(degrees)))) ** 2
-        rows.append(
-            f"{degrees:g} degrees: {ratio[0]:.4f} reflected, {ratio[1]:.4f} refracted, predicted {predicted:.4f}"
-        )
-    return (
-        "eval / pdf over the weight that `sample` returns, at u = 0 where the microfacet is the surface, and"
-        f" (1.2 - 0.2 sqrt(cos theta))^2, by which D exceeds its widened copy there: {'; '.join(rows)}."
-    )
-
-
-def underground() -> str:
-    """Integrate the density of roughplastic below the surface."""
-    rows = []
-    for distribution in ("beckmann", "ggx"):
-        bsdf = MitsubaBSDF({"type": "roughplastic", "distribution": distribution, "alpha": 0.4}, direction(50.0, 25.0))
-        x, weight = sphere(400, 400, 0.0)
-        below = x * (1, 1, -1)
-        drawn = bsdf.sample(uniforms(1_000_000, 3))
-        wrong = np.count_nonzero(drawn.x[drawn.valid, 2] < 0)
-        rows.append(
-            f"{distribution}: {weight @ bsdf.pdf(x):.4f} above and {weight @ bsdf.pdf(below):.4f} below the surface,"
-            f" where {wrong} of 10^6 samples fall and eval is {np.max(bsdf.eval(below)):g}"
-        )
-    return f"Integral of pdf() by a product rule, at 50 degrees: {'; '.join(rows)}."
-
-
-def centre() -> str:
-    """Evaluate two warps at the centre of the square."""
-    middle = np.full((1, 2), 0.5)
-    square = MitsubaWarp("square_to_uniform_square_concentric", UnitSquare()).sample(middle)[0]
-    beckmann = MitsubaWarp("square_to_beckmann", UnitHemisphere(), later=(0.3,)).sample(middle)[0]
-    return f"At u = (1/2, 1/2) they return {vector(square)} and {vector(beckmann)}, and finite points all around."
-
-
-def vector(x: np.ndarray, digits: int = 4) -> str:
-    """Return a vector in words."""
-    return f"({', '.join(f'{float(c):.{digits}f}' for c in x)})"
 
 
 FINDINGS = (

@@ -94,9 +94,9 @@ def measured(
 
 def joined(*parts: DepthPanels) -> DepthPanels:
     """Return the panels of all parts, in order along each ray."""
-    joined = DepthPanels(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
-    order = np.lexsort((joined.start, joined.ray))
-    return DepthPanels(*(column[order] for column in joined))
+    together = DepthPanels(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
+    order = np.lexsort((together.start, together.ray))
+    return DepthPanels(*(column[order] for column in together))
 
 
 def with_jumps_beside(look: Look, panels: DepthPanels, origin: np.ndarray, direction: np.ndarray) -> DepthPanels:

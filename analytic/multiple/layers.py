@@ -31,7 +31,7 @@ ROUNDING = 256 * EPS
 """What rounding adds to the error, relative, and 4 eps for each factor e below 1."""
 
 TWO = [
-    {"tau": 0.5, "albedo": 0.99, "phase": {"kind": "henyey-greenstein", "g": 0.8}},
+    {"tau": 0.5, "albedo": 0.99, "phase": {"kind": "henyey-greenstein", "g": 0.5}},
     {"tau": 1, "albedo": 0.7, "phase": {"kind": "rayleigh"}},
 ]
 SNOW = {"kind": "lambert", "albedo": 0.8}

@@ -15,25 +15,6 @@ from fogproof import domains as _domains
 from fogproof.contracts import Draw, Draws, Estimator, Reference, Sampler
 from fogproof.domains import *  # noqa: F403
 from fogproof.errors import FogproofError, InvalidValueError, UnsupportedError
-from fogproof.scene import cameras as _cameras
-from fogproof.scene import grounds as _grounds
-from fogproof.scene import lights as _lights
-from fogproof.scene import media as _media
-from fogproof.scene import occluders as _occluders
-from fogproof.scene import phase as _phase
-from fogproof.scene import surfaces as _surfaces
-from fogproof.scene.cameras import *  # noqa: F403
-from fogproof.scene.grounds import *  # noqa: F403
-from fogproof.scene.image_scenes import ImageScene
-from fogproof.scene.lights import *  # noqa: F403
-from fogproof.scene.media import *  # noqa: F403
-from fogproof.scene.occluders import *  # noqa: F403
-from fogproof.scene.phase import *  # noqa: F403
-from fogproof.scene.rays import Ray
-from fogproof.scene.scenes import Scattering, Scene
-from fogproof.scene.shapes import HalfSpace, Shape, Slab, Unbounded
-from fogproof.scene.slab_layers import SlabLayer
-from fogproof.scene.surfaces import *  # noqa: F403
 
 if TYPE_CHECKING:
     from fogproof.checks import *  # noqa: F403
@@ -42,7 +23,26 @@ if TYPE_CHECKING:
     from fogproof.images.pairs import compare_pictures
     from fogproof.relation_check import check_relations
     from fogproof.runs import Run
+    from fogproof.scene import cameras as _cameras
+    from fogproof.scene import grounds as _grounds
+    from fogproof.scene import lights as _lights
+    from fogproof.scene import media as _media
+    from fogproof.scene import occluders as _occluders
+    from fogproof.scene import phase as _phase
+    from fogproof.scene import surfaces as _surfaces
+    from fogproof.scene.cameras import *  # noqa: F403
     from fogproof.scene.files import read_image_scene, read_scene
+    from fogproof.scene.grounds import *  # noqa: F403
+    from fogproof.scene.image_scenes import ImageScene
+    from fogproof.scene.lights import *  # noqa: F403
+    from fogproof.scene.media import *  # noqa: F403
+    from fogproof.scene.occluders import *  # noqa: F403
+    from fogproof.scene.phase import *  # noqa: F403
+    from fogproof.scene.rays import Ray
+    from fogproof.scene.scenes import Scattering, Scene
+    from fogproof.scene.shapes import HalfSpace, Shape, Slab, Unbounded
+    from fogproof.scene.slab_layers import SlabLayer
+    from fogproof.scene.surfaces import *  # noqa: F403
     from fogproof.scene.volume_files import read_voxel_grid
     from fogproof.scene_estimator import estimator_for
 
@@ -76,15 +76,19 @@ __all__ = [
     "read_scene",
     "read_voxel_grid",
 ]
-__all__ += _cameras.__all__
 __all__ += _checks.__all__
 __all__ += _domains.__all__
-__all__ += _grounds.__all__
-__all__ += _lights.__all__
-__all__ += _media.__all__
-__all__ += _occluders.__all__
-__all__ += _phase.__all__
-__all__ += _surfaces.__all__
+if TYPE_CHECKING:
+    __all__ += _cameras.__all__
+    __all__ += _grounds.__all__
+    __all__ += _lights.__all__
+    __all__ += _media.__all__
+    __all__ += _occluders.__all__
+    __all__ += _phase.__all__
+    __all__ += _surfaces.__all__
+_NAMES = list(__all__)
+if not TYPE_CHECKING:  # what scenes are made of loads when it is first asked for, and with it the list of all names
+    del __all__
 
 _LAZY = {
     "check_gradient": "fogproof.gradient_check",
@@ -107,8 +111,12 @@ def __getattr__(name: str) -> Any:
         return getattr(importlib.import_module(_LAZY[name]), name)
     if name in _SUBPACKAGES:
         return importlib.import_module(f"fogproof.{name}")
+    if name == "__all__":
+        return globals().setdefault(name, sorted({*_NAMES, *importlib.import_module("fogproof.scene").__all__}))
+    if name[:1].isupper() and name in (scene := importlib.import_module("fogproof.scene")).__all__:
+        return globals().setdefault(name, getattr(scene, name))
     raise AttributeError(f"module 'fogproof' has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_checks.__all__, *_LAZY, *_SUBPACKAGES})
+    return sorted({*globals(), *__getattr__("__all__"), *_SUBPACKAGES})

@@ -1,7 +1,8 @@
 """An error of exactly the stated size is caught, by every kind of finding; the short form of `tools/planted.py`."""
 
 import pytest
-from planted import PLANTS, caught, stated
+from planted import caught, stated
+from planted_errors import PLANTS
 
 from fogproof.checks import fresh_seed
 

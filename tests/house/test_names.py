@@ -1,6 +1,7 @@
 """Names: one name for one thing, no value with a space in it, every public name is where it is said to be."""
 
 import ast
+import functools
 import importlib
 import pkgutil
 import re
@@ -19,7 +20,6 @@ ROOT = Path(__file__).resolve().parents[2]
 SOURCES = [path for folder in ("analytic", "estimators", "reports") for path in sorted((ROOT / folder).rglob("*.py"))]
 _ELSEWHERE = {"analytic", "estimators", "reports"}  # links to the folders above
 SOURCES += [p for p in sorted((ROOT / "src").rglob("*.py")) if not set(p.relative_to(ROOT).parts) & _ELSEWHERE]
-TREES = {path.relative_to(ROOT).as_posix(): ast.parse(path.read_text()) for path in SOURCES}
 
 TWICE = {
     "Ball": "a set of points to draw from, and a body that holds a medium; both are what everybody calls a ball",
@@ -30,9 +30,14 @@ PRIVATE_WORDS = {"crew", "handful", "_told", "gathering", "matter"}  # what they
 LONGEST = 150
 
 
+@functools.cache  # not at the head: whoever collects tests would parse all of the sources
+def trees():
+    return {path.relative_to(ROOT).as_posix(): ast.parse(path.read_text()) for path in SOURCES}
+
+
 def classes():
     found = defaultdict(list)
-    for path, tree in TREES.items():
+    for path, tree in trees().items():
         for node in tree.body:
             if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
                 found[node.name].append(path)
@@ -45,7 +50,7 @@ def test_no_class_name_stands_for_two_things():
 
 
 def test_no_value_has_a_space_in_it():
-    for path, tree in TREES.items():
+    for path, tree in trees().items():
         for node in ast.walk(tree):
             if isinstance(node, ast.Subscript) and isinstance(node.value, ast.Name) and node.value.id == "Literal":
                 values = {leaf.value for leaf in ast.walk(node.slice) if isinstance(leaf, ast.Constant)}
@@ -54,7 +59,7 @@ def test_no_value_has_a_space_in_it():
 
 
 def test_no_private_word_is_a_name():
-    for path, tree in TREES.items():
+    for path, tree in trees().items():
         names = {getattr(node, part, None) for node in ast.walk(tree) for part in ("id", "attr", "arg", "name")}
         assert not names & PRIVATE_WORDS, path
 
@@ -69,7 +74,7 @@ def test_no_module_is_hidden_by_a_function_of_its_name():
 
 
 def test_cases_are_data():
-    for path, tree in TREES.items():
+    for path, tree in trees().items():
         if path.startswith("src/fogproof/catalogue/"):
             for node in ast.walk(tree):
                 if isinstance(node, ast.FunctionDef):

@@ -41,6 +41,15 @@ def test_importing_fogproof_loads_numpy_alone():
     assert out.stdout.strip() == "[]"
 
 
+def test_what_scenes_are_made_of_loads_when_it_is_asked_for():
+    code = (
+        "import sys, fogproof; print('fogproof.scene' in sys.modules); from fogproof import *;"
+        " print(Medium is fogproof.scene.Medium, Ball is fogproof.domains.Ball, 'Mie' in dir(fogproof))"
+    )
+    out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert out.stdout.split() == ["False", "True", "True", "True"]
+
+
 def test_every_lazy_name_resolves():
     import fogproof
 

@@ -15,7 +15,7 @@ from fogproof.study.cells import Cell
 from fogproof.study.convergence import Estimate, Floor
 from fogproof.study.judgement import Judged
 from fogproof.study.reaching import TARGETS, ErrorOverTime, Reach, reach_of, variance_law
-from fogproof.study.scatter import freedom, spread
+from fogproof.study.scatter import degrees_of_freedom, spread
 from fogproof.study.speed import Times
 
 _NO_LAW = 0.001
@@ -64,7 +64,7 @@ def _follows(variance: float, cell: Cell, levels: Sequence[Level], errors: Seque
     """Return whether the errors that were measured are those of independent realisations with this variance."""
     from scipy.special import chdtr, chdtrc
 
-    freedom = np.array([freedom(cell, level, data) for level in levels])
+    freedom = np.array([degrees_of_freedom(cell, level, data) for level in levels])
     squares = np.array([e.value**2 * level.count / variance for e, level in zip(errors, levels, strict=True)])
     statistic, total = float(np.sum(freedom * squares)), float(np.sum(freedom))
     return 2 * min(float(chdtr(total, statistic)), float(chdtrc(total, statistic))) >= _NO_LAW

@@ -18,7 +18,7 @@ from fogproof.study.error_curve import error_curve, reaches_of, stays_for_good
 from fogproof.study.judgement import Judged, inherited, judge, out_of_range, resolution_of
 from fogproof.study.methods.table import kind_of, options_of
 from fogproof.study.reaching import Reach
-from fogproof.study.scatter import freedom, kurtosis, spread
+from fogproof.study.scatter import degrees_of_freedom, kurtosis, spread
 from fogproof.study.speed import Times, times_of
 
 
@@ -119,7 +119,7 @@ def _fall(
     size = np.array([e.value for e in errors])
     steps = cell.method.axis == "steps"
     hidden = np.array([resolution_of(value, error, level.count if steps else 1) for level in levels])
-    freedom = np.array([math.inf if steps else freedom(cell, level, data) for level in levels])
+    freedom = np.array([math.inf if steps else degrees_of_freedom(cell, level, data) for level in levels])
     return order_of(counts, size, freedom, hidden), floor_of(counts, size, hidden) if steps else None
 
 

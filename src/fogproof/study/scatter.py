@@ -15,7 +15,7 @@ def kurtosis(cell: Cell, data: Moments) -> float:
     return 0.0 if cell.points == "sobol" else excess(data)
 
 
-def freedom(cell: Cell, level: Level, data: Moments) -> float:
+def degrees_of_freedom(cell: Cell, level: Level, data: Moments) -> float:
     """Return the degrees of freedom of a level's mean square."""
     return len(level.rows) / (1 + max(kurtosis(cell, data) / level.count, 0.0) / 2)
 
