@@ -10,7 +10,7 @@ from typing import get_args
 import numpy as np
 
 from fogproof.errors import InvalidValueError, UnsupportedError
-from fogproof.estimators.airlight.lighting import Illumination, Sampler, illumination, met, sampler, towards
+from fogproof.estimators.airlight.lighting import Illumination, LightSampler, illumination, met, sampler, towards
 from fogproof.estimators.airlight.occlusion import lit
 from fogproof.estimators.airlight.shadow_rays import ShadowRays, shadow_transmittance
 from fogproof.estimators.airlight.shapes import through
@@ -134,7 +134,7 @@ class LitMedium:
         return albedo * self.extinction.sigma(t) * phase_value_at(self.medium.phase, x, mu)
 
     def _scattered_from_extent(
-        self, sample: Sampler, t: np.ndarray, rng: np.random.Generator
+        self, sample: LightSampler, t: np.ndarray, rng: np.random.Generator
     ) -> tuple[np.ndarray, np.ndarray]:
         """One direction to a light with extent is drawn for each place, so that each of them looks along one way."""
         x = self.points(t)

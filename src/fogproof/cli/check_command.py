@@ -8,7 +8,7 @@ import click
 
 from fogproof.checks.json_values import jsonable
 from fogproof.cli.terminal import say
-from fogproof.pipe.check import Outcome, Settings, check_file, check_program
+from fogproof.pipe.check import Checked, Settings, check_file, check_program
 from fogproof.pipe.process import Timeouts
 
 _CODES = {"not rejected": 0, "rejected": 1, "inconclusive": 3}
@@ -65,7 +65,7 @@ def command(
     return _CODES[outcome.verdict.outcome]
 
 
-def _tell(outcome: Outcome, as_json: bool) -> None:
+def _tell(outcome: Checked, as_json: bool) -> None:
     verdict = outcome.verdict
     if as_json:
         say(json.dumps(jsonable({**verdict.to_dict(), "notes": outcome.notes, "stderr": outcome.said})))

@@ -150,7 +150,7 @@ def _best(setting: Setting, base: Fit, hypotheses: list[Hypothesis]) -> Explaine
 
 def _likelihood(setting: Setting, hypothesis: Hypothesis, value: float) -> float:
     points = setting.contrast.points
-    likelihood = setting.contrast.fit(hypothesis.density(setting, value)(points)).likelihood
+    likelihood = setting.contrast.likelihood(hypothesis.density(setting, value)(points))
     return likelihood if math.isfinite(likelihood) else -math.inf
 
 

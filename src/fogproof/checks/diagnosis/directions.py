@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import permutations
+from typing import Any
 
 import numpy as np
 
@@ -62,13 +63,13 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
     yield Hypothesis(
         "stretched",
         "these samples fit the pdf with x and y stretched by {value}",
-        lambda s, a: s.moved(lambda x: _unit(x * (1 / a, 1 / a, 1.0))),
+        lambda s, a: s.moved(lambda x: _unit(x * (1 / a, 1 / a, 1.0)), _squeezed(1 / a)),
         (0.25, 0.5, 0.7, 1.4, 2.0, 4.0),
     )
     yield Hypothesis(
         "missing square root",
         "these samples fit the pdf with the cosine raised to the power {value}",
-        lambda s, a: s.moved(_cosine_to(1 / a)),
+        lambda s, a: s.moved(_cosine_to(1 / a), lambda x: np.abs(x[:, 2]) ** (1 / a - 1) / a),
         (0.5, 0.7, 1.5, 2.0, 3.0),
         known_number({2.0: "a square root of the cosine is missing", 0.5: "a square root too many"}),
     )
@@ -85,6 +86,11 @@ def _sine(x: np.ndarray) -> np.ndarray:
 
 def _unit(x: np.ndarray) -> np.ndarray:
     return np.asarray(x / np.sqrt(np.sum(x * x, axis=1, keepdims=True)))
+
+
+def _squeezed(factor: float) -> Density:
+    """Return the solid angle that x times (factor, factor, 1) fills, per solid angle at x: its determinant over its length^3."""
+    return lambda x: np.asarray(factor**2 / np.sum((x * (factor, factor, 1.0)) ** 2, axis=1) ** 1.5)
 
 
 def _cosine_to(power: float) -> Callable[[np.ndarray], np.ndarray]:
@@ -155,17 +161,17 @@ def _lobes(setting: Setting) -> Iterator[Hypothesis]:
     )
 
 
-def henyey_greenstein(mu: np.ndarray, g: float) -> np.ndarray:
+def henyey_greenstein(mu: np.ndarray, g: float | np.ndarray) -> np.ndarray:
     """Return the law of Henyey & Greenstein (1941), up to a constant factor that does not depend on mu."""
     return np.asarray((1 - g * g) / np.maximum(1 + g * g - 2 * g * mu, 1e-12) ** 1.5)
 
 
-def schlick(mu: np.ndarray, k: float) -> np.ndarray:
+def schlick(mu: np.ndarray, k: float | np.ndarray) -> np.ndarray:
     """Return the law of Schlick (1993)."""
     return np.asarray((1 - k * k) / np.maximum(1 - k * mu, 1e-9) ** 2)
 
 
-def _is_lobe(setting: Setting, axis: np.ndarray, length: float, f: Callable[[np.ndarray, float], np.ndarray]) -> bool:
+def _is_lobe(setting: Setting, axis: np.ndarray, length: float, f: Callable[[Any, Any], np.ndarray]) -> bool:
     """Return whether the claim itself is such a lobe: its ratio to one with its own width is a constant."""
     x = setting.contrast.x[:512]
     p, mu = setting.p(x), x @ axis
@@ -174,7 +180,7 @@ def _is_lobe(setting: Setting, axis: np.ndarray, length: float, f: Callable[[np.
     ends = np.argmax(mu), np.argmin(mu)
     target = np.log(p[ends[0]] / p[ends[1]])
     values = np.linspace(-0.999, 0.999, 4001)
-    own = np.array([np.log(f(mu[[ends[0]]], v)[0] / f(mu[[ends[1]]], v)[0]) for v in values])
+    own = np.log(f(mu[ends[0]], values) / f(mu[ends[1]], values))
     best = values[int(np.argmin(np.abs(own - target)))]
     ratio = np.log(p) - np.log(f(mu, best))
     return bool(np.std(ratio) < 0.02)

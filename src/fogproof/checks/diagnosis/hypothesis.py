@@ -39,13 +39,16 @@ class Setting:
         weight = self._at_points[n:] / self.contrast.q[n:]
         return np.tensordot(weight, z, axes=1) / max(float(weight.sum()), 1e-300)
 
-    def moved(self, back: Callable[[np.ndarray], np.ndarray]) -> Density:
-        """Return the density of points that a map has moved, by the inverse of the map: p(y) |dy/dx| at y = back(x)."""
+    def moved(self, back: Callable[[np.ndarray], np.ndarray], jacobian: Density | None = None) -> Density:
+        """Return the density of points that a map has moved, by the inverse of the map: p(y) |dy/dx| at y = back(x).
+
+        jacobian  x -> |dy/dx| in the measure of the domain, where it has a closed form; differences cost five times as much
+        """
 
         def density(x: np.ndarray) -> np.ndarray:
             y = back(x)
             with np.errstate(all="ignore"):
-                volume = self._volume(back, x) * self.law.density(x) / self.law.density(y)
+                volume = jacobian(x) if jacobian else self._volume(back, x) * self.law.density(x) / self.law.density(y)
             return np.where(np.isfinite(volume), self.p(y) * volume, 0.0)
 
         return density

@@ -31,7 +31,7 @@ _LEAST = 100  # samples, below which none but declared facts tells anything
 _SHORT = 4.0  # standard deviations by which a sample's variance may fall short of the declared one
 DOUBT = 0.01
 """A p-value below this that holds for every law, where the usual test could not be used, is no pass yet."""
-LAWLESS = 0.1  # share of alpha for declared facts, which hold whatever the law
+DISTRIBUTION_FREE = 0.1  # share of alpha for declared facts, which hold whatever the law
 
 
 def mean_test(
@@ -54,7 +54,7 @@ def mean_test(
     uncertain = error if uncertain is None else uncertain
     if data.n == 0:
         return Finding(name, "inconclusive", f"{what}: there are no data", alpha=alpha)
-    share = alpha if known == replace(NOTHING, light=known.light) else (1 - LAWLESS) * alpha
+    share = alpha if known == replace(NOTHING, light=known.light) else (1 - DISTRIBUTION_FREE) * alpha
     if data.low == data.high:
         finding = _constant(name, what, data, reference, error, share, known, ways)
     elif two_valued(data):
@@ -66,7 +66,7 @@ def mean_test(
     elif share < alpha and finding.p_value is not None:
         p = extremes_p(data, reference - error, reference + error, known)
         if p <= alpha - share:
-            finding = replace(finding, p_value=max(p, finding.p_value), exact=False, lawless=True)
+            finding = replace(finding, p_value=max(p, finding.p_value), exact=False, distribution_free=True)
     if finding.outcome == "not rejected" and uncertain > abs(reference) and uncertain > data.stderr:
         message = f"{finding.message}; the reference is known too coarsely, to within {uncertain:.2g}, to tell it from nothing"
         finding = replace(finding, outcome="inconclusive", message=message, p_value=None, resolution=None)
@@ -220,7 +220,7 @@ def _lawless(
             alpha=alpha,
             exact=False,
             effect=effect,
-            lawless=True,
+            distribution_free=True,
         )
     if finding.outcome == "inconclusive" and known.two_sided and p <= DOUBT:
         message = f"{finding.message.partition(';')[0]}; {known.words()} leave that a probability of {p:.2g}: ask for more samples"
