@@ -58,6 +58,7 @@ class Declarable:
     bounds    of its bounds
     tails     of the lightness of its tails
     more      what there may be more of
+    other     what else would decide, in words
     """
 
     variance: str = ""
@@ -65,16 +66,19 @@ class Declarable:
     bounds: str = ""
     tails: str = ""
     more: str = "samples"
+    other: str = ""
 
     def of_values(self) -> str:
         """Return in words what would decide about values that vary, "" if there is nothing."""
         ways = [way for way in (self.bounds, self.variance, self.tails) if way]
-        return f", or declare {_either(ways)}" if ways else ""
+        return f", or declare {_either(ways)}" if ways else f", or {self.other}" if self.other else ""
 
     def of_a_constant(self) -> str:
         """Return in words what would decide where no value differs from another."""
         ways = [way for way in (self.zero, self.bounds) if way]
-        return f". Declare {_either(ways)} of its values" if ways else f": ask for more {self.more}"
+        if ways:
+            return f". Declare {_either(ways)} of its values"
+        return f": ask for more {self.more}" + (f", or {self.other}" if self.other else "")
 
 
 def _either(ways: list[str]) -> str:
