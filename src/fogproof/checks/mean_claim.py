@@ -126,7 +126,7 @@ class MeanClaim:
 
     def _may_fall_short(self, finding: Finding) -> bool:
         """Return whether a variance that is too small is an error: it is none if rare values can hold what is missing."""
-        return finding.lawless or self.known.light
+        return finding.distribution_free or self.known.light
 
     def _second_look(self, finding: Finding, again: Again, complete: bool) -> Finding:
         alpha, known = SECOND * self.share, self.known
@@ -151,7 +151,7 @@ class MeanClaim:
                 exact=False,
                 cause=cause,
                 region=(side,),
-                lawless=True,
+                distribution_free=True,
             )
         if tail.suspect() and not known.two_sided:
             index, spread = tail.index()
@@ -175,7 +175,7 @@ class MeanClaim:
         """
         if finding.outcome != "rejected" or finding.p_value is None or finding.p_value > EARLY * self.share:
             return False
-        return finding.lawless or self._absurd()
+        return finding.distribution_free or self._absurd()
 
 
 def _within(error: float) -> str:

@@ -86,7 +86,7 @@ class Finding:
     interval    where the true effect lies
     region      where the misfit is, and in which direction, in words
     cause       the likely class of error where it is rejected: "normalisation", "wrong measure", "atom", ...
-    lawless     True if the p-value holds whatever the law of the values
+    distribution_free     True if the p-value holds whatever the law of the values
     """
 
     check: str
@@ -102,7 +102,7 @@ class Finding:
     interval: EffectInterval | None = None
     region: tuple[str, ...] = ()
     cause: str = ""
-    lawless: bool = False
+    distribution_free: bool = False
 
     def located(self, region: str) -> Finding:
         """Return the finding with one more word on where the misfit is."""

@@ -28,7 +28,7 @@ _LEAST = 100  # samples, below which none but declared facts tells anything
 _SHORT = 4.0  # standard deviations by which a sample's variance may fall short of the declared one
 DOUBT = 0.01
 """A p-value below this that holds for every law, where the usual test could not be used, is no pass yet."""
-LAWLESS = 0.1  # share of alpha for declared facts, which hold whatever the law
+DISTRIBUTION_FREE = 0.1  # share of alpha for declared facts, which hold whatever the law
 
 
 def mean_test(
@@ -49,7 +49,9 @@ def mean_test(
     uncertain = error if uncertain is None else uncertain
     if data.n == 0:
         return Finding(name, "inconclusive", f"{what}: there are no data", alpha=alpha)
-    share = alpha if known == replace(NOTHING, light=known.light) else (1 - LAWLESS) * alpha
+    share = (
+        alpha if known == replace(NOTHING, light=known.light, advice=known.advice) else (1 - DISTRIBUTION_FREE) * alpha
+    )
     if data.low == data.high:
         finding = _constant(name, what, data, reference, error, share, known)
     elif _two_valued(data):
@@ -61,7 +63,7 @@ def mean_test(
     elif share < alpha and finding.p_value is not None:
         p = extremes_p(data, reference - error, reference + error, known)
         if p <= alpha - share:
-            finding = replace(finding, p_value=max(p, finding.p_value), exact=False, lawless=True)
+            finding = replace(finding, p_value=max(p, finding.p_value), exact=False, distribution_free=True)
     if finding.outcome == "not rejected" and uncertain > abs(reference) and uncertain > data.stderr:
         message = f"{finding.message}; the reference is known too coarsely, to within {uncertain:.2g}, to tell it from nothing"
         finding = replace(finding, outcome="inconclusive", message=message, p_value=None, resolution=None)
@@ -131,9 +133,8 @@ def _constant(
     message = f"{what}: all {data.n} samples are {data.mean:.12g} and the reference is {reference:.12g}"
     if not known.two_sided:
         message += f"; an event too rare to be seen looks the same as a bias{unseen(data, data.mean - reference, error, alpha)}"
-        message += (
-            ". Declare variance=0 if the estimator has none, its exact variance=, or bounds=(low, high) of its values"
-        )
+        usual = "Declare variance=0 if the estimator has none, its exact variance=, or bounds=(low, high) of its values"
+        message += f". {known.advice.capitalize() or usual}"
     return Finding(name, "inconclusive", message, None, alpha, effect=data.mean - reference)
 
 
@@ -193,7 +194,8 @@ def _why_not(data: Moments, alpha: float, known: Known, exponent: float, effect:
 
 
 def _declare(known: Known) -> str:
-    return "" if known.two_sided else ', or declare bounds=(low, high), the exact variance=, or tails="light"'
+    usual = 'declare bounds=(low, high), the exact variance=, or tails="light"'
+    return "" if known.two_sided else f", or {known.advice or usual}"
 
 
 def _lawless(
@@ -212,7 +214,7 @@ def _lawless(
             alpha=alpha,
             exact=False,
             effect=effect,
-            lawless=True,
+            distribution_free=True,
         )
     if finding.outcome == "inconclusive" and known.two_sided and p <= DOUBT:
         message = f"{finding.message.partition(';')[0]}; {known.words()} leave that a probability of {p:.2g}: ask for more samples"
