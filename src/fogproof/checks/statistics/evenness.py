@@ -28,8 +28,13 @@ _LEAST = 50.0  # samples expected in a cell of a call
 _FEWEST = 15  # degrees of freedom: with fewer, counts are equal by chance
 
 
-def evenness_test(name: str, labels: tuple[str, ...], calls: np.ndarray, alpha: float) -> Finding:
-    """Test that calls differ as independent samples do; calls (calls, axes, cells) counts, along each axis."""
+def evenness_test(
+    name: str, labels: tuple[str, ...], calls: np.ndarray, alpha: float, meant: str = "declare quasi_random=True"
+) -> Finding:
+    """Test that calls differ as independent samples do; calls (calls, axes, cells) counts, along each axis.
+
+    meant  what to do if the samples are to be so even, in words
+    """
     from scipy.special import chdtr, chdtri
 
     worst = (2.0, 0, "", 0.0, 0)
@@ -53,7 +58,7 @@ def evenness_test(name: str, labels: tuple[str, ...], calls: np.ndarray, alpha: 
     if p > alpha:
         return Finding(name, "not rejected", message, p, alpha, False, share, 1 - share, resolution)
     advice = "antithetic pairs" if mates else "a stratified or low-discrepancy stream"
-    advice += ", in whatever order; if it is meant, declare quasi_random=True"
+    advice += f", in whatever order; if it is meant, {meant}"
     return Finding(
         name,
         "rejected",
