@@ -212,4 +212,4 @@ def test_requests():
 
 def test_moments_beyond_float64_are_refused():
     with pytest.raises(UnsupportedError, match=r"a moment of the estimate 'next-flight' is beyond 1\.8e308"):
-        analytic.voxel_estimate_cost([0.5, 3], [1, 0.7], "next-flight", majorant=1e-160)
+        voxel_estimate_cost([0.5, 3], [1, 0.7], "next-flight", majorant=1e-160)
