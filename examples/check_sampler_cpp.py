@@ -14,9 +14,10 @@ import numpy as np
 import fogproof
 
 source = Path(__file__).with_name("sampler.cpp")
-library = Path(tempfile.mkdtemp()) / "sampler.so"
-subprocess.run(["c++", "-O2", "-shared", "-fPIC", *sys.argv[1:], source, "-o", library], check=True)
-cpp = ctypes.CDLL(str(library))
+with tempfile.TemporaryDirectory() as folder:
+    library = Path(folder) / "sampler.so"
+    subprocess.run(["c++", "-O2", "-shared", "-fPIC", *sys.argv[1:], source, "-o", library], check=True)
+    cpp = ctypes.CDLL(str(library))  # stays loaded when its file is gone
 
 
 def call(function, n, *arrays):

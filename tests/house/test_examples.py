@@ -16,8 +16,11 @@ needs_compiler = pytest.mark.skipif(shutil.which("c++") is None, reason="no C++ 
 
 @needs_compiler
 @pytest.mark.parametrize(("flags", "words"), [([], "not rejected"), (["-DFLIPPED"], "sign convention")])
-def test_a_sampler_in_cpp(flags, words):
-    run = subprocess.run([sys.executable, EXAMPLE, *flags], capture_output=True, text=True)
+def test_a_sampler_in_cpp(flags, words, tmp_path):
+    """It says what it found, and leaves no library behind."""
+    environment = os.environ | {"TMPDIR": str(tmp_path)}
+    run = subprocess.run([sys.executable, EXAMPLE, *flags], capture_output=True, text=True, env=environment)
+    assert not list(tmp_path.iterdir())
     assert words in run.stdout, run.stderr
     assert (run.returncode == 0) == (not flags)
 

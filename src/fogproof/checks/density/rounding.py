@@ -8,6 +8,7 @@ nothing shows; then a coordinate made of coarse numbers may be off by a few of t
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -80,12 +81,12 @@ class _Axis:
     step: float
     exact: bool
 
-    @property
+    @cached_property
     def at(self) -> np.ndarray:
         """The probability below each point, (q,)."""
         return np.interp(self.counted, self.marginal.edges, self.marginal.cdf)
 
-    @property
+    @cached_property
     def shift(self) -> np.ndarray:
         """How far rounding moves each point, (q,), in probability."""
         m, at = self.marginal, self.at
