@@ -166,7 +166,7 @@ def _explain(record: dict[str, Any]) -> None:
         say(f"\n{place} failed {failure['attempts']} times: {failure['error']}", err=True)
     if record["advice"]:
         say(f"\n{record['advice']}", err=True)
-    if record["mixed"]:
+    if record["mixed_environments"]:
         say("\nbatches of different versions or machines are mixed in this run, see 'sessions'", err=True)
     if record["history"]:
         say(f"\nagainst the earlier run: {record['history']['text']}", err=True)
