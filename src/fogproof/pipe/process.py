@@ -92,7 +92,14 @@ class Process:
         """Return the next lines without their ends, all within the time limit."""
         deadline, parts, found, size = time.monotonic() + seconds, [self._ahead], self._ahead.count(b"\n"), 0
         while found < count:
-            parts.append(self._some(deadline, seconds, f"{awaited} ({found} of {count} lines came)", _CHUNK))
+            parts.append(
+                self._some(
+                    deadline,
+                    seconds,
+                    f"{awaited} ({found} of {count} lines came: does it keep some back, in a buffer of its input or output?)",
+                    _CHUNK,
+                )
+            )
             found, size = found + parts[-1].count(b"\n"), size + len(parts[-1])
             if size > _LINE * (found + 1):
                 raise self.broken(f"wrote {quoted(parts[1])} and no end of line where {awaited} was due")
