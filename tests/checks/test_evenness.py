@@ -77,7 +77,7 @@ def opposite(rng, n):
 def test_partners_are_found_wherever_in_a_call_they_stand(sample, pdf, domain):
     verdict = check_sampler(sample, pdf, domain, **{**CALLS, "samples": 1 << 19})
     assert verdict.outcome == "rejected", str(verdict)
-    assert verdict.cause == "dependent samples", str(verdict)
+    assert verdict.cause == "correlation", str(verdict)
     assert check_sampler(sample, pdf, domain, quasi_random=True, **CALLS).outcome == "not rejected"
 
 

@@ -69,7 +69,7 @@ def evenness_test(
         share,
         1 - share,
         resolution,
-        cause="dependent samples" if mates else "stratified samples",
+        cause="correlation" if mates else "stratified samples",
     )
 
 
