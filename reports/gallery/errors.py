@@ -9,6 +9,7 @@ import numpy as np
 
 from fogproof.analytic import single_scattering
 from fogproof.estimators import Airlight, MarchedAirlight
+from fogproof.estimators.airlight.placing import Placing
 from fogproof.reports.charts.colours import EXPECTED, OBSERVED, THIRD
 from fogproof.scene import Medium, PointLight, Ray
 
@@ -37,11 +38,12 @@ class ErrorAgainstWork:
         ray = Ray([0.0, 0.0, 0.0], [0.0, 0.0, 1.0], 12.0)
         exact = float(single_scattering(medium, ray, light).value)
         counts = 2 ** np.arange(0, int(np.log2(self.places)) + 1, 2)
-        errors = {}
-        for name, colour in (("free-path", THIRD), ("equiangular", OBSERVED)):
-            estimator = Airlight(medium, ray, light, placing=name)
-            values = estimator.draw(self.rng, self.repeats * self.places).value.reshape(self.repeats, self.places)
-            errors[name] = [_rms(values[:, :n].mean(axis=1) / exact - 1) for n in counts], colour
+        errors: dict[str, tuple[list[float], str]] = {}
+        placings: tuple[tuple[Placing, str], ...] = (("free-path", THIRD), ("equiangular", OBSERVED))
+        for placing, colour in placings:
+            estimator = Airlight(medium, ray, light, placing=placing)
+            drawn = estimator.draw(self.rng, self.repeats * self.places).value.reshape(self.repeats, self.places)
+            errors[placing] = [_rms(drawn[:, :n].mean(axis=1) / exact - 1) for n in counts], colour
         marched = [MarchedAirlight(medium, ray, light, int(n)).draw(self.rng, 1).value[0] / exact - 1 for n in counts]
         errors["midpoint marching"] = np.abs(marched).tolist(), EXPECTED
         for name, (values, colour) in errors.items():
