@@ -54,7 +54,7 @@ def write_study_page(study: StudyRecord, folder: Path) -> Path:
         for _, picture in figures:
             picture.save(folder / "figures")
         rows = [StudyRow(entry, cases[f"{scene.name} / {entry.name}"]) for entry in scene.estimators]
-        place = {name: k for k, name in enumerate((*scene.answer.ranking, *scene.answer.out))}
+        place = {name: k for k, name in enumerate((*scene.answer.ranking, *scene.answer.unranked))}
         rows.sort(key=lambda row: place.get(row.entry.name, len(place)))
         shown.append(SceneShown(scene, tuple(rows), figures))
     counts = {status: sum(case.status == status for case in run.cases) for status in STATUSES}

@@ -72,7 +72,7 @@ def measure(cell: Cell, levels: Sequence[Level], alpha: float, twin: Measured | 
         "reason": cell.method.bias,
         "outcome": judged.outcome,
         "warning": judged.warning,
-        "wants": judged.wants,
+        "times_as_many": judged.times_as_many,
         "findings": judged.findings,
         "moments": _moments(data),
         "bias": None if bias is None else asdict(bias),
