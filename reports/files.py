@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import re
@@ -55,6 +56,30 @@ def _is_ours(path: Path) -> bool:
         return False
     mark = record.get("schema", record.get("format")) if isinstance(record, dict) else None
     return isinstance(mark, str) and mark.startswith("fogproof")
+
+
+def require_other(output: str | Path, *sources: str | Path) -> None:
+    """Refuse to write a file that is read."""
+    for source in sources:
+        with contextlib.suppress(OSError):  # one of them is not there
+            if os.path.samefile(output, source):
+                raise InvalidInputError(f"{output} is the file that is read; write to another", str(output))
+
+
+def write_output(output: str | Path, content: str | bytes, *sources: str | Path) -> Path:
+    """Write the file that a user names: links are followed, devices and pipes written into, anything else put there whole.
+
+    sources  files that the content was made from, which it must not replace
+    """
+    require_other(output, *sources)
+    path = Path(os.path.realpath(output))
+    if path.is_file() or not path.exists() or path.is_dir():
+        return write_file(path, content)
+    try:
+        path.write_bytes(content if isinstance(content, bytes) else content.encode("utf-8"))
+    except OSError as error:
+        raise InvalidInputError(f"cannot write {output}: {error.strerror}", str(output)) from None
+    return path
 
 
 def write_file(path: Path, content: str | bytes) -> Path:

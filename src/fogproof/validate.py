@@ -11,6 +11,9 @@ from fogproof.errors import InvalidValueError, shorten
 Channels = float | tuple[float, ...]
 """A grey value, or one value a colour or wavelength channel."""
 
+LONGEST = 1e6
+"""The longest time limit [s]: systems wait so long for sure, and eleven days are as good as none."""
+
 
 def as_float_array(name: str, value: Any) -> np.ndarray:
     """Return `value` as a new float64 array without negative zeros, or say what cannot be read as numbers."""
@@ -124,6 +127,12 @@ def one_direction(name: str, value: object) -> tuple[float, float, float]:
     if vector.ndim != 1:
         raise InvalidValueError(name, "must be one vector [x, y, z]", value)
     return tuple(vector.tolist())
+
+
+def time_limit(name: str, value: Any) -> float:
+    """Return a time limit in (0, `LONGEST`] [s]."""
+    rule = f"must be > 0 and at most {LONGEST:g} [s]"
+    return number(name, value, rule, np.nextafter(0, 1), LONGEST)
 
 
 def positive_length(name: str, value: Any) -> float:

@@ -171,7 +171,7 @@ def test_levels_of_scans_and_ends():
     held([scan("", marginal, c, 1e-6).p_value for c in counts], 0.05)
     rng = np.random.default_rng()
     low, high = rng.beta(1, 2000, 400), rng.beta(2000, 1, 400)
-    held([scan_ends("", marginal, c, a, b, 1e-6).p_value for c, a, b in zip(counts, low, high, strict=True)], 0.05)
+    held([scan_ends("", marginal, c, a, b, 0.0, 1e-6).p_value for c, a, b in zip(counts, low, high, strict=True)], 0.05)
 
 
 def test_the_extreme_sample_has_a_beta_law():

@@ -13,6 +13,7 @@ class Known:
     variance   an upper bound on its variance, or None
     low, high  no realisation lies outside
     light      its tails are no heavier than those of the exponential law: Student's test may be used with few realisations
+    advice     what could be declared beside, in words, where it is not the usual
     assumed    bounds are not declared: no negative value was seen, and one that mattered would have to be absurdly large
     """
 
@@ -21,6 +22,7 @@ class Known:
     high: float = math.inf
     light: bool = False
     assumed: bool = False
+    advice: str = ""
 
     @property
     def deviation(self) -> float | None:

@@ -49,7 +49,9 @@ def mean_test(
     uncertain = error if uncertain is None else uncertain
     if data.n == 0:
         return Finding(name, "inconclusive", f"{what}: there are no data", alpha=alpha)
-    share = alpha if known == replace(NOTHING, light=known.light) else (1 - DISTRIBUTION_FREE) * alpha
+    share = (
+        alpha if known == replace(NOTHING, light=known.light, advice=known.advice) else (1 - DISTRIBUTION_FREE) * alpha
+    )
     if data.low == data.high:
         finding = _constant(name, what, data, reference, error, share, known)
     elif _two_valued(data):
@@ -131,9 +133,8 @@ def _constant(
     message = f"{what}: all {data.n} samples are {data.mean:.12g} and the reference is {reference:.12g}"
     if not known.two_sided:
         message += f"; an event too rare to be seen looks the same as a bias{unseen(data, data.mean - reference, error, alpha)}"
-        message += (
-            ". Declare variance=0 if the estimator has none, its exact variance=, or bounds=(low, high) of its values"
-        )
+        usual = "Declare variance=0 if the estimator has none, its exact variance=, or bounds=(low, high) of its values"
+        message += f". {known.advice.capitalize() or usual}"
     return Finding(name, "inconclusive", message, None, alpha, effect=data.mean - reference)
 
 
@@ -193,7 +194,8 @@ def _why_not(data: Moments, alpha: float, known: Known, exponent: float, effect:
 
 
 def _declare(known: Known) -> str:
-    return "" if known.two_sided else ', or declare bounds=(low, high), the exact variance=, or tails="light"'
+    usual = 'declare bounds=(low, high), the exact variance=, or tails="light"'
+    return "" if known.two_sided else f", or {known.advice or usual}"
 
 
 def _lawless(
