@@ -23,20 +23,20 @@ _PAGES = {
 }
 
 
-def prepare_folder(folder: Path, names: tuple[str, ...] = REPORT, force: bool = False) -> None:
+def prepare_folder(folder: Path, names: tuple[str, ...] = REPORT, force: bool | None = None) -> None:
     """Make `folder` and see that it can be written, and that no file of somebody else's is replaced.
 
     A page is ours if it says so, a record if its `schema` (`format`) is one of ours. Of what bears no mark, such as a table,
     the records beside it decide. Better to learn all that before a run than after it.
 
     names  of the files that will be written there
-    force  replace whatever is there
+    force  replace whatever is there; None where nobody can ask for that
     """
     records = [folder / name for name in names if name.endswith(".json")]
     for path in [] if force else [folder / name for name in names]:
         marked = path.suffix in _PAGES or path in records
         if os.path.lexists(path) and not (_is_ours(path) if marked else any(map(_is_ours, records))):
-            fix = "choose another folder, or add --force to replace it"
+            fix = "choose another folder" + ("" if force is None else ", or add --force to replace it")
             raise InvalidInputError(f"{path} was not written by fogproof; {fix}", str(path))
     probe = folder / f".probe.{os.getpid()}"
     write_file(probe, b"")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numbers
 from typing import Any
 
 import numpy as np
@@ -19,11 +20,18 @@ def as_float_array(name: str, value: Any) -> np.ndarray:
     """Return `value` as a new float64 array without negative zeros, or say what cannot be read as numbers."""
     try:
         array = np.asarray(value)
+        if array.dtype.kind == "O" and all(_is_number(one) for one in array.flat):  # fractions, decimals, mpmath's
+            array = array.astype(np.float64)
         if array.dtype.kind not in "iuf":
             raise TypeError(array.dtype)
         return np.asarray(array.astype(np.float64) + 0.0)  # -0.0 + 0.0 = 0.0: its sign must not choose a branch
     except (TypeError, ValueError, OverflowError):
-        raise InvalidValueError(name, "must be a number or an array of numbers", value) from None
+        fix = "give real and imaginary parts as two channels" if np.iscomplexobj(value) else ""
+        raise InvalidValueError(name, "must be a number or an array of numbers", value, fix) from None
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, numbers.Number) and not isinstance(value, bool | complex)
 
 
 def first_bad(array: np.ndarray, good: np.ndarray) -> Any:

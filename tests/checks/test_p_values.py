@@ -470,5 +470,5 @@ def test_a_mean_of_few_even_numbers_has_students_law_and_interval():
     found = mean_test("", "", Moments.of(x), 4.5 * error, 0.0, 1e-6)
     assert found.p_value == near(2 * stats.t.sf(4.5, 159), rel=1e-4)
     assert found.interval.high - found.interval.low == near(
-        2 * stats.norm.isf((1 - found.interval.confidence) / 2) * error, rel=1e-6
+        2 * stats.t.isf((1 - found.interval.confidence) / 2, 159) * error, rel=1e-6
     )

@@ -20,7 +20,7 @@ from fogproof.checks.statistics.binomial import binomial
 from fogproof.checks.statistics.cells import blocks
 from fogproof.checks.statistics.chi_square import chi_square_along, joint
 from fogproof.checks.statistics.evenness import evenness_test
-from fogproof.checks.statistics.known import Known
+from fogproof.checks.statistics.known import Declarable
 from fogproof.checks.statistics.kolmogorov import kolmogorov
 from fogproof.checks.statistics.means import mean_test
 from fogproof.checks.statistics.moments import Moments
@@ -138,8 +138,8 @@ def _add_labels(add: Callable[..., None], mixture: MixtureTest, tally: Tally) ->
     add("largest cell", labels.largest, "labels, largest cell", mixture.describe, conventions)
 
 
-_WEIGHTS = Known(advice="give eval, and every single weight is held to eval(x) / pdf(x)")
+_WEIGHTS = Declarable(other="give eval, and every single weight is held to eval(x) / pdf(x)")
 
 
 def _mean_weight(name: str, data: Moments, claimed: float, alpha: float) -> Finding:
-    return mean_test(name, name, data, claimed, 1e-6 * abs(claimed), alpha, "wrong weight", _WEIGHTS)
+    return mean_test(name, name, data, claimed, 1e-6 * abs(claimed), alpha, "wrong weight", ways=_WEIGHTS)

@@ -93,7 +93,7 @@ def whole(name: str, sums: tuple[Sums, ...], alpha: float) -> Finding:
         return Finding(name, "inconclusive", message, p, alpha)
     spread = 1 / math.sqrt(variance)
     step = (normal_quantile(alpha / 2) + normal_quantile(MISS)) * spread
-    resolution = Resolution("factor on the pdf, off 1 by more than that,", step * (1 + step), MISS)
+    resolution = Resolution("deviation from 1 of a factor on the pdf", step * (1 + step), MISS)
     rejected = p <= alpha
     off = total * spread
     mean, error = _integral(sums)
@@ -226,6 +226,6 @@ def _reach(sums: Sums, depths: int, alpha: float) -> Resolution | None:
             share = z / math.sqrt(max(float(_folded(sums.cells, depth)[1].min()), 1e-300))
             share += 0.5 * share**2  # what the tail is wider for skewness, or for Bennett's bound
             if share <= _THIRD:
-                kind = f"factor on the pdf in one of {1 << depth} cells, off 1 by more than that,"
+                kind = f"deviation from 1 of a factor on the pdf in one of {1 << depth} cells"
                 return Resolution(kind, share / (1 - share), MISS)
     return None
