@@ -23,7 +23,7 @@ def test_no_source_file_is_too_long():
     assert {name for name in LONGER if lines.get(name, 0) <= MOST} == set(), "listed, and not longer"
 
 
-LINES = 60
+LINES = 70
 """Of a function, without its docstring."""
 LONG = {
     "trace": "one loop that follows a path to its end: in parts it would hand a dozen numbers from one to the next",
