@@ -73,7 +73,7 @@ def command(
         )
     if stop.code:
         if not (folder / "results.json").exists():
-            say(f"fogproof: stopped before anything was drawn; start again with: {called}", err=True)
+            say(f"fogproof: stopped before anything was drawn in this run; start again with: {called}", err=True)
             return stop.code
         page = write_report(read_record(folder), folder, keep=True)
         say(f"fogproof: stopped; what was drawn is kept, go on with: {called}\npage: {page}", err=True)

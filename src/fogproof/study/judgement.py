@@ -178,7 +178,7 @@ def _against_theory(levels: Sequence[Level], variance: Reference | None, alpha: 
     what = "mean squared deviation"
     findings = [mean_test("variance", what, squares, exact, error, alpha, "wrong variance")]
     last, data = levels[-1], pooled(levels[-1].rows)
-    if exact > 0 and len(last.rows) and data.m2 > 0 and excess(data) / last.count < _NEARLY_NORMAL:
+    if exact > 0 and len(last.rows) > 1 and data.m2 > 0 and excess(data) / last.count < _NEARLY_NORMAL:
         findings.append(_scatter(last, exact, alpha))
     return findings
 

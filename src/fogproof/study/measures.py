@@ -135,7 +135,8 @@ def _bias(cell: Cell, levels: Sequence[Level], data: Moments, error: float) -> E
     else:
         means = levels[-1].rows[:, 1]
         off = float(means.mean()) - float(cell.reference.value)
-        reach = Z * float(means.std(ddof=1)) / math.sqrt(len(means)) if cell.method.axis == "samples" else 0.0
+        scatter = float(means.std(ddof=1)) if len(means) > 1 else math.nan  # one alone says nothing of it
+        reach = Z * scatter / math.sqrt(len(means)) if cell.method.axis == "samples" else 0.0
     return Estimate(off, off - reach - error, off + reach + error)
 
 
