@@ -119,7 +119,8 @@ class LitMedium:
         if uniform is not None and self.shape == EVERYWHERE and self.shadow_rays == "exact" and not self.occluders:
             value = self.albedo * self.extinction.sigma(t) * phase_value(self.phase, mu) * irradiance
             sigma_t = float(uniform(self.medium))
-            return value * np.exp(-sigma_t * distance) if sigma_t > 0 else value, np.ones_like(t)
+            with np.errstate(over="ignore"):  # a thickness beyond 1.8e308 is as good as inf
+                return value * np.exp(-sigma_t * distance) if sigma_t > 0 else value, np.ones_like(t)
         x = self.points(t)
         w = towards(self.light, x)
         value = self._scattering(t, x, mu) * irradiance

@@ -16,7 +16,7 @@ from typing import Any, Literal, TypeVar, cast
 from fogproof.checks.json_values import jsonable
 from fogproof.checks.verdict import Verdict
 from fogproof.errors import InvalidInputError, shorten
-from fogproof.input_files import read_text
+from fogproof.input_files import parse_json, read_text
 from fogproof.oracle_error import OracleError
 from fogproof.plan import Plan
 from fogproof.reports.charts.findings import parse_figure
@@ -148,7 +148,7 @@ def load_record(folder: str | Path) -> dict[str, Any]:
         raise InvalidInputError(f"cannot read {path}: {there} {RESULTS}; {make} make one", str(path))
     text = read_text(path, "the record")
     try:
-        record = json.loads(text)
+        record = parse_json(text)
     except (ValueError, RecursionError) as error:
         ends = isinstance(error, json.JSONDecodeError) and error.pos >= len(text.rstrip())
         reason = "it ends in the middle of a record" if ends else f"it is not JSON ({error})"

@@ -118,7 +118,9 @@ def check_estimator(
     name = "realisations" if source.finite else getattr(draw, "__qualname__", type(draw).__name__)
     reproduce = f"check_estimator({name}, ..., samples={samples}, alpha={alpha:g}, seed={seed})"
     seconds = time.perf_counter() - started
-    return Verdict(tuple(findings), alpha, seen.n, seed, seconds, settings, likely_cause(findings), reproduce)
+    cause = likely_cause(findings)
+    untested = tuple(finding.message for finding in findings if finding.check == "other orders")
+    return Verdict(tuple(findings), alpha, seen.n, seed, seconds, settings, cause, reproduce, unchecked=untested)
 
 
 def _labels_of(reference: Known) -> frozenset[int]:

@@ -18,9 +18,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 
 from fogproof.children import start
-from fogproof.errors import InvalidInputError, InvalidValueError, UnsupportedError
+from fogproof.errors import InvalidInputError, UnsupportedError
 from fogproof.pipe.faults import BROKEN, ProgramError, end_of, quoted
 from fogproof.text import one_line
+from fogproof.validate import time_limit
 
 _KEPT = 2000  # bytes of stderr, at its beginning and at its end
 _CHUNK = 1 << 16
@@ -39,8 +40,7 @@ class Timeouts:
 
     def __post_init__(self) -> None:
         for field in fields(self):
-            if not getattr(self, field.name) > 0:
-                raise InvalidValueError(f"{field.name} timeout", "must be > 0 [s]", getattr(self, field.name))
+            time_limit(f"{field.name} timeout", getattr(self, field.name))
 
 
 class Process:
@@ -92,7 +92,14 @@ class Process:
         """Return the next lines without their ends, all within the time limit."""
         deadline, parts, found, size = time.monotonic() + seconds, [self._ahead], self._ahead.count(b"\n"), 0
         while found < count:
-            parts.append(self._some(deadline, seconds, f"{awaited} ({found} of {count} lines came)", _CHUNK))
+            parts.append(
+                self._some(
+                    deadline,
+                    seconds,
+                    f"{awaited} ({found} of {count} lines came: does it keep some back, in a buffer of its input or output?)",
+                    _CHUNK,
+                )
+            )
             found, size = found + parts[-1].count(b"\n"), size + len(parts[-1])
             if size > _LINE * (found + 1):
                 raise self.broken(f"wrote {quoted(parts[1])} and no end of line where {awaited} was due")

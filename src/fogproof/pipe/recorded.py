@@ -11,9 +11,12 @@ from dataclasses import replace
 import numpy as np
 
 from fogproof.checks import Verdict
+from fogproof.checks.diagnosis.causes import likely_cause
 from fogproof.checks.pilot import PILOT
+from fogproof.checks.promises import Watch
 from fogproof.checks.sampler import SamplerCheck
 from fogproof.checks.subject import Subject
+from fogproof.checks.verdict import Finding
 from fogproof.contracts import Draw
 from fogproof.errors import InvalidInputError, SubjectError
 
@@ -36,6 +39,12 @@ class Recorded:
     def tested(self) -> int:
         """How many rows are there to be tested."""
         return len(self._draw.x) - self.pilot
+
+    def broken(self, subject: Subject) -> dict[str, Finding]:
+        """Return what the pilot breaks of what every single sample promises: it is not counted, but it is looked at."""
+        watch = Watch(subject)
+        watch.look(Draw(*(None if part is None else part[: self.pilot] for part in self._draw)))  # type: ignore[arg-type]
+        return {f.check: f for f in watch.findings() if f.outcome == "rejected"}
 
     def begin(self) -> None:
         """From now on every row is handed out once."""
@@ -68,5 +77,7 @@ def check_recorded(
     check = replace(check, prepared=replace(check.prepared, calls=None))  # there is nobody to call
     recorded.begin()
     verdict = check.run()
-    kept = tuple(finding for finding in verdict.findings if finding.check != "edge uniforms")
-    return replace(verdict, findings=kept)
+    early = recorded.broken(check.prepared.subject)
+    kept = tuple(early.get(f.check, f) if f.outcome != "rejected" else f for f in verdict.findings)
+    kept = tuple(finding for finding in kept if finding.check != "edge uniforms")
+    return replace(verdict, findings=kept, cause=verdict.cause or likely_cause(kept))

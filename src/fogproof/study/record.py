@@ -13,7 +13,7 @@ from typing import Any
 
 from fogproof.checks.json_values import jsonable
 from fogproof.errors import InvalidInputError, shorten
-from fogproof.input_files import read_text
+from fogproof.input_files import parse_json, read_text
 from fogproof.plan import plan
 from fogproof.scene import Scattering, Scene
 from fogproof.study.aggregate import levels_of
@@ -188,7 +188,7 @@ def read_results(path: Path) -> dict[str, Any]:
     """Return the record of a finished study, from its folder or file."""
     file = path / "results.json" if path.is_dir() else path
     try:
-        record = json.loads(read_text(file, "the record"))
+        record = parse_json(read_text(file, "the record"))
     except (ValueError, RecursionError) as error:
         raise InvalidInputError(f"cannot read {file}: it is not JSON ({error})", str(file)) from None
     if not isinstance(record, dict) or record.get("schema") != SCHEMA or record.get("kind") != "study":

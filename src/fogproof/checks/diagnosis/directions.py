@@ -14,6 +14,7 @@ from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting, known_numb
 
 _MIRROR = np.array([1.0, 1.0, -1.0])
 _ALONG = 0.03  # from a coordinate axis: such a lobe is meant to be about it
+_PER_CELL = 8  # samples in a cell, seen and expected, that tell a density
 _LEAN = 0.03  # mean length of directions that have a direction
 
 
@@ -41,11 +42,7 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
     yield Hypothesis(
         "missing Jacobian", "these samples have a sine of theta too many", lambda s, _: lambda x: s.p(x) * _sine(x)
     )
-    yield Hypothesis(
-        "normalised cube",
-        "these samples are points of a cube, normalised without rejection",
-        lambda s, _: lambda x: s.p(x) / np.abs(x).max(axis=1) ** 3,
-    )
+    yield from _flat(setting)
     yield from _frames(setting)
     yield Hypothesis(
         "wrong power",
@@ -74,6 +71,48 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
         known_number({2.0: "a square root of the cosine is missing", 0.5: "a square root too many"}),
     )
     yield from _lobes(setting)
+
+
+def _flat(setting: Setting) -> Iterator[Hypothesis]:
+    """Yield that points of a cube, or of one plane, are normalised as if that kept areas.
+
+    Seen from its origin, a plane's area of unit distance and normal n fills the solid angle (x . n)^3. The normal is not known: in
+    cells, samples over what the claim expects, to the power -1/3, are a linear function of x, of which it is the gradient.
+    """
+    x = setting.contrast.x
+    if len(np.unique(3 * (x.max(axis=1) == np.abs(x).max(axis=1)) + np.abs(x).argmax(axis=1))) > 3:
+        yield Hypothesis(
+            "normalised cube",
+            "these samples are points of a cube, normalised without rejection",
+            lambda s, _: lambda x: s.p(x) / np.abs(x).max(axis=1) ** 3,
+        )
+    normal = _normal(setting)
+    if normal is None or np.any(x @ normal <= 0):
+        return
+    to = ", ".join(f"{c:.3f}" for c in normal)
+    words = f"these samples are even on the area of a plane of normal ({to}) where the pdf means solid angle"
+    words += ": the cosine over the squared distance is missing"
+    yield Hypothesis(
+        "missing Jacobian", words, lambda s, _: lambda x: s.p(x) / np.maximum(x @ normal, 1e-9) ** 3, fitted=2
+    )
+
+
+def _normal(setting: Setting) -> np.ndarray | None:
+    """Return the normal of the plane that the samples would be even on, None if no plane is seen."""
+    contrast = setting.contrast
+    n, cells = len(contrast.x), int(contrast.cell.max()) + 1
+    weight = setting.p(contrast.points)[n:] / contrast.q[n:]
+    seen = np.bincount(contrast.cell[:n], minlength=cells)
+    expected = np.bincount(contrast.cell[n:], weight, cells) * n / max(float(weight.sum()), 1e-300)
+    full = (seen >= _PER_CELL) & (expected >= _PER_CELL)
+    if np.count_nonzero(full) < 2 * _PER_CELL:
+        return None
+    middle = np.stack(
+        [np.bincount(contrast.cell[n:], weight * contrast.z[:, axis], cells) for axis in range(3)], axis=1
+    )
+    places = middle[full] / np.bincount(contrast.cell[n:], weight, cells)[full, None]
+    gradient = np.linalg.lstsq(places, (seen[full] / expected[full]) ** (-1 / 3), rcond=None)[0]
+    return np.asarray(gradient / max(float(np.linalg.norm(gradient)), 1e-300))
 
 
 def _everywhere(x: np.ndarray) -> np.ndarray:

@@ -88,6 +88,7 @@ def _of_another_measure(origin: float) -> Iterator[Hypothesis]:
         lambda s, a: lambda x: s.p(x) * np.maximum(np.abs(x - origin), 1e-12) ** a,
         _POWERS,
         known_number({-1.0: "a factor x is missing", 1.0: "a factor x too many", -2.0: "a factor x^2 is missing"}),
+        otherwise="wrong power",
     )
     if origin != 0.0:
         yield Hypothesis(

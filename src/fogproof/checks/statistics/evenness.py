@@ -22,8 +22,13 @@ _LEAST = 50.0  # samples expected in a cell of a call
 _FEWEST = 15  # degrees of freedom: with fewer, counts are equal by chance
 
 
-def evenness_test(name: str, labels: tuple[str, ...], calls: np.ndarray, alpha: float) -> Finding:
-    """Test that calls differ as independent samples do; calls (calls, axes, cells) counts, along each axis."""
+def evenness_test(
+    name: str, labels: tuple[str, ...], calls: np.ndarray, alpha: float, meant: str = "declare quasi_random=True"
+) -> Finding:
+    """Test that calls differ as independent samples do; calls (calls, axes, cells) counts, along each axis.
+
+    meant  what to do if the samples are to be so even, in words
+    """
     from scipy.special import chdtr, chdtri
 
     worst = (1.0, "", 0.0, 0)
@@ -41,7 +46,7 @@ def evenness_test(name: str, labels: tuple[str, ...], calls: np.ndarray, alpha: 
     message = f"between calls, counts along {label} vary {share:.3g} times as much as those of independent samples"
     if p > alpha:
         return Finding(name, "not rejected", message, p, alpha, False, share, 1 - share, resolution)
-    advice = "a stratified or low-discrepancy stream; if it is meant, declare quasi_random=True"
+    advice = f"a stratified or low-discrepancy stream; if it is meant, {meant}"
     return Finding(
         name,
         "rejected",
