@@ -176,13 +176,14 @@ def _lines(record: dict[str, Any]) -> str:
 
 
 def write_csv(run: RunRecord, folder: str | Path) -> Path:
-    """Write `folder/results.csv`, one row a case, and return its path.
+    """Write `folder/results.csv`, one row a case, and return its path; of a case that was asked for and is missing the row says so.
 
     No text in it can be taken for a formula, see `spreadsheet_cell`.
     """
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\r\n")
     rows = [_row(case, run) for case in run.cases]
+    rows += [dict.fromkeys(COLUMNS) | {"name": name, "status": "not run"} for name in run.missing]
     writer.writerow(COLUMNS)
     writer.writerows(map(spreadsheet_cell, row.values()) for row in rows)
     return write_file(Path(folder) / "results.csv", out.getvalue())

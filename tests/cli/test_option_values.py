@@ -7,6 +7,7 @@ from fogproof.checks.limits import isolated
 from fogproof.errors import InvalidValueError
 from fogproof.oracle.limits import Limits, within
 from fogproof.pipe.process import Timeouts
+from fogproof.study.executors import open_workers
 
 RENDERED = ["scene.toml", "--with", "true {scene} {out}", "-o", "none"]
 TAKES = {
@@ -39,6 +40,13 @@ def test_numbers_that_no_run_can_use_are_bad_usage(tmp_path, monkeypatch, words,
         assert (end.code, end.out) == (2, b""), value
         assert f"Invalid value for '{option}': must be a number in".encode() in end.err
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("address", ["nosuch", "nosuch:", ":8786", "nosuch:port", ""])
+def test_an_address_without_host_or_port_is_bad_usage(address):
+    with pytest.raises(InvalidValueError, match="--executor must name host and port, as dask://host:port"):  # noqa: SIM117
+        with open_workers(f"dask://{address}", 1):
+            pass
 
 
 def test_time_limits_that_no_system_waits_for_are_refused_or_none():

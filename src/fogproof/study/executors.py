@@ -102,6 +102,9 @@ def _end_with(sentinel: int) -> None:
 
 @contextlib.contextmanager
 def _dask(address: str) -> Iterator[Workers]:
+    host, _, port = address.rpartition(":")
+    if not host or not port.isdigit():
+        raise InvalidValueError("--executor", "must name host and port, as dask://host:port", f"dask://{address}")
     try:
         from distributed import Client
     except ImportError:
