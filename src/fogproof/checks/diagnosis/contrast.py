@@ -147,7 +147,9 @@ def claimed(subject: Subject) -> Density:
     def density(x: np.ndarray) -> np.ndarray:
         within = in_domain(subject.domain, x, 64 * subject.roundoff)
         p = np.zeros(len(x))
-        if within.any():
+        if within.all():  # nothing to pick out
+            p = subject.density(x)
+        elif within.any():
             p[within] = subject.density(x[within])
         return np.where(np.isfinite(p), p, 0.0)
 
