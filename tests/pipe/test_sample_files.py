@@ -73,6 +73,16 @@ def test_an_atom_and_returned_densities(tmp_path):
     assert check_file(written(path, rows, "t,pdf,event"), PATHS).verdict.cause == "wrong probability of an atom"
 
 
+@pytest.mark.parametrize("row", [7, 3000])
+def test_no_row_may_be_no_point(tmp_path, row):
+    """Those that set scales are not counted, and must keep every promise all the same."""
+    x = directions(4000)
+    x[row] = np.nan
+    verdict = check_file(written(tmp_path / "x.npy", x), DIRECTIONS).verdict
+    assert (verdict.outcome, verdict.cause) == ("rejected", "outside the domain"), verdict
+    assert "nan" in str(verdict)
+
+
 def test_equal_samples_are_found(tmp_path):
     """Half of the samples written twice: a file is no excuse for repeats."""
     x = directions(10_000)

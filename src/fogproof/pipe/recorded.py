@@ -11,7 +11,9 @@ from dataclasses import replace
 import numpy as np
 
 from fogproof.checks import Verdict
+from fogproof.checks.diagnosis.causes import likely_cause
 from fogproof.checks.pilot import PILOT
+from fogproof.checks.promises import Watch
 from fogproof.checks.sampler import SamplerCheck
 from fogproof.checks.subject import Subject
 from fogproof.contracts import Draw
@@ -31,6 +33,11 @@ class Recorded:
             raise InvalidInputError(f"there are {n} samples; at least {LEAST} are needed", "file")
         self.pilot = min(PILOT, n // 4)
         self._at: int | None = None
+
+    @property
+    def first(self) -> Draw:
+        """The rows of the pilot."""
+        return self._rows(slice(self.pilot))
 
     @property
     def tested(self) -> int:
@@ -55,6 +62,9 @@ class Recorded:
             rows = np.arange(self.pilot, self.pilot + n)
         else:
             raise SubjectError(f"there are no {n} samples", "file")  # the same ones twice would look like atoms
+        return self._rows(rows)
+
+    def _rows(self, rows: np.ndarray | slice) -> Draw:
         x, *others = (None if part is None else part[rows] for part in self._draw)
         assert x is not None
         return Draw(x, *others)
@@ -69,4 +79,16 @@ def check_recorded(
     recorded.begin()
     verdict = check.run()
     kept = tuple(finding for finding in verdict.findings if finding.check != "edge uniforms")
-    return replace(verdict, findings=kept)
+    return _with_pilot(replace(verdict, findings=kept), recorded, subject)
+
+
+def _with_pilot(verdict: Verdict, recorded: Recorded, subject: Subject) -> Verdict:
+    """Return the verdict with the promises that rows of the pilot break: these are not counted, and must be points all the same."""
+    watch = Watch(subject)
+    watch.look(recorded.first)
+    told = {finding.check for finding in verdict.findings if finding.outcome == "rejected"}
+    broken = {f.check: f for f in watch.findings() if f.outcome == "rejected" and f.check not in told}
+    if not broken:
+        return verdict
+    others = tuple(finding for finding in verdict.findings if finding.check not in broken)
+    return replace(verdict, findings=(*broken.values(), *others), cause=verdict.cause or likely_cause(broken.values()))
