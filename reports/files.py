@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import re
@@ -22,20 +23,20 @@ _PAGES = {
 }
 
 
-def prepare_folder(folder: Path, names: tuple[str, ...] = REPORT, force: bool = False) -> None:
+def prepare_folder(folder: Path, names: tuple[str, ...] = REPORT, force: bool | None = None) -> None:
     """Make `folder` and see that it can be written, and that no file of somebody else's is replaced.
 
     A page is ours if it says so, a record if its `schema` (`format`) is one of ours. Of what bears no mark, such as a table,
     the records beside it decide. Better to learn all that before a run than after it.
 
     names  of the files that will be written there
-    force  replace whatever is there
+    force  replace whatever is there; None where nobody can ask for that
     """
     records = [folder / name for name in names if name.endswith(".json")]
     for path in [] if force else [folder / name for name in names]:
         marked = path.suffix in _PAGES or path in records
         if os.path.lexists(path) and not (_is_ours(path) if marked else any(map(_is_ours, records))):
-            fix = "choose another folder, or add --force to replace it"
+            fix = "choose another folder" + ("" if force is None else ", or add --force to replace it")
             raise InvalidInputError(f"{path} was not written by fogproof; {fix}", str(path))
     probe = folder / f".probe.{os.getpid()}"
     write_file(probe, b"")
@@ -55,6 +56,30 @@ def _is_ours(path: Path) -> bool:
         return False
     mark = record.get("schema", record.get("format")) if isinstance(record, dict) else None
     return isinstance(mark, str) and mark.startswith("fogproof")
+
+
+def require_other(output: str | Path, *sources: str | Path) -> None:
+    """Refuse to write a file that is read."""
+    for source in sources:
+        with contextlib.suppress(OSError):  # one of them is not there
+            if os.path.samefile(output, source):
+                raise InvalidInputError(f"{output} is the file that is read; write to another", str(output))
+
+
+def write_output(output: str | Path, content: str | bytes, *sources: str | Path) -> Path:
+    """Write the file that a user names: links are followed, devices and pipes written into, anything else put there whole.
+
+    sources  files that the content was made from, which it must not replace
+    """
+    require_other(output, *sources)
+    path = Path(os.path.realpath(output))
+    if path.is_file() or not path.exists() or path.is_dir():
+        return write_file(path, content)
+    try:
+        path.write_bytes(content if isinstance(content, bytes) else content.encode("utf-8"))
+    except OSError as error:
+        raise InvalidInputError(f"cannot write {output}: {error.strerror}", str(output)) from None
+    return path
 
 
 def write_file(path: Path, content: str | bytes) -> Path:

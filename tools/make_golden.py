@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from fogproof.analytic.proven.airlight import airlight_ball
-from fogproof.analytic.proven.balls import Ball
+from fogproof.analytic.proven.balls import ProvenBall
 from fogproof.analytic.proven.radiance import proven_radiance, proven_thickness, proven_transmittance
 from fogproof.quantities import quantities
 from fogproof.scene.files import read_fields
@@ -105,7 +105,7 @@ def _of_medium(medium: dict[str, Any], ray: dict[str, Any]) -> Iterator[dict[str
         yield {"quantity": "emitted_radiance", **scene, "times_sigma_a": False}
 
 
-def enclosure(request: dict[str, Any]) -> Ball:
+def enclosure(request: dict[str, Any]) -> ProvenBall:
     """Return the proven answer to one question."""
     name = request["quantity"]
     given = {key: value for key, value in request.items() if key != "quantity"}
@@ -127,7 +127,7 @@ def enclosure(request: dict[str, Any]) -> Ball:
     return ball
 
 
-def decimal(ball: Ball) -> tuple[str, str]:
+def decimal(ball: ProvenBall) -> tuple[str, str]:
     """Return midpoint and radius of a decimal ball that contains the ball, as exact decimal numbers."""
     if not ball.is_finite():
         return "inf", "0"

@@ -153,32 +153,19 @@ def _by_rule(
     w/wt matters to a phase function, so w e^v and wt e^v = wt0 e^-u0 save a division.
     """
     x, weights = RULES[nodes]
-    low, high = window.low[which], window.high[which]
-    # Edges of several panels count from the anchor, where the integrand is large: an edge is then off by half an EPS of its
-    # distance from there, and not of the length of the whole window.
-    split = panels > 1
-    extent = np.where(split, high - low, 1.0)
-    below = np.where(split, np.ceil(panels * (-low / extent)), 0).astype(np.intp)
-    above = np.where(split, np.ceil(panels * (high / extent)), 1).astype(np.intp)
-    start = np.where(split, 0.0, low)
-    widths = -low / np.maximum(below, 1), (high - start) / np.maximum(above, 1)
-    first = np.cumsum(below + above) - below - above
-    total = int((below + above).sum())
-    item = np.repeat(np.arange(len(which)), below + above)
-    panel = np.arange(total) - (first + below)[item]
-    width_ = np.where(panel < 0, widths[0][item], widths[1][item])
-    u0 = start[item] + panel * width_
+    item, first, u0, width = _laid_out(panels, window.low[which], window.high[which])
     owner = which[item]
     k, grown = window.k[owner], np.exp(u0)
     before = np.exp(-k * np.expm1(u0))
     k, w0, wt0 = -k * grown, window.w0[owner] * grown, window.wt0[owner] / grown
+    total = len(item)
     parts = np.zeros((3, total))
     step = BLOCK // nodes
     buffers = np.empty((4, nodes, step))
     for i in range(0, total, step):
         block = slice(i, min(i + step, total))
         e, grow, w, f = buffers[:, :, : block.stop - i]
-        np.multiply(x[:, None], width_[block], out=e)
+        np.multiply(x[:, None], width[block], out=e)
         np.expm1(e, out=e)
         np.add(e, 1.0, out=grow)
         e *= k[block]
@@ -200,7 +187,28 @@ def _by_rule(
                 parts[2, block] = weights @ (f * noise)
             f *= factor
         parts[0, block] = weights @ f
-    parts *= 2 * before * width_
+    parts *= 2 * before * width
     if total > len(which):
         parts = np.add.reduceat(parts, first, axis=1)
     return parts
+
+
+def _laid_out(
+    panels: np.ndarray, low: np.ndarray, high: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Return whose each panel is, the first of each window, and where each begins and how wide it is.
+
+    Edges of several panels count from the anchor, where the integrand is large: an edge is then off by half an EPS of its distance
+    from there, and not of the length of the whole window.
+    """
+    split = panels > 1
+    extent = np.where(split, high - low, 1.0)
+    below = np.where(split, np.ceil(panels * (-low / extent)), 0).astype(np.intp)
+    above = np.where(split, np.ceil(panels * (high / extent)), 1).astype(np.intp)
+    start = np.where(split, 0.0, low)
+    widths = -low / np.maximum(below, 1), (high - start) / np.maximum(above, 1)
+    first = np.cumsum(below + above) - below - above
+    item = np.repeat(np.arange(len(panels)), below + above)
+    panel = np.arange(len(item)) - (first + below)[item]
+    width = np.where(panel < 0, widths[0][item], widths[1][item])
+    return item, first, start[item] + panel * width, width

@@ -49,26 +49,56 @@ def lit_pieces(
     medium: AnyMedium, ray: FlatRays, shape: Shape, beam: Beam, extent: Extent | None, shadows: list[Shadow]
 ) -> Pieces:
     """Return the pieces of the rays between all breaks that a light may reach."""
-    where = beam.where
-    sure = None
+    breaks, sure = _breaks(medium, ray, shape)
+    start, end = breaks[:, :1], breaks[:, -1:]
+    if extent is not None:
+        end = np.clip(extent.end[:, None], start, end)
+    places = [breaks, *_places_of_detail(medium, start, end), *(np.stack(shadow, axis=1) for shadow in shadows)]
+    places += _places_of_the_light(medium, beam, extent)
+    every = np.concatenate(places, axis=1)
+    every = np.sort(np.where((every >= start) & (every <= end), every, start), axis=1)
+    every = np.concatenate([every, end], axis=1)
+    owner, k = np.nonzero(every[:, 1:] > every[:, :-1])
+    low, high = every[owner, k], every[owner, k + 1]
+    weight = _reached(owner, 0.5 * (low + high), sure, beam, shadows)
+    lit = weight > 0
+    if beam.where is not None:
+        lit &= ~meets_light(beam.where)[owner]
+    owner, low, high, weight = owner[lit], low[lit], high[lit], weight[lit]
+    if extent is None:
+        none = np.full(len(owner), np.nan)
+        return Pieces(owner, low, high, _span(beam, owner, low, high), weight, none, none)
+    foot, reach = extent.foot[owner], extent.reach[owner]
+    span = np.arcsinh((high - foot) / reach) - np.arcsinh((low - foot) / reach)
+    return Pieces(owner, low, high, span, weight, foot, reach)
+
+
+def _breaks(medium: AnyMedium, ray: FlatRays, shape: Shape) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray] | None]:
+    """Return the breaks of the medium along each ray, (n, breaks); of a uniform one also where the ray is in the shape for sure."""
     if is_uniform(medium):
         inside = chord(shape, ray)
         end = np.minimum(inside.end, inside.start + DARK / _thinnest(medium))
         sure = inside.sure_start, np.minimum(inside.sure_end, end)
         breaks = np.stack([inside.start, *sure, end], axis=1)
     else:
-        breaks = breakpoints(medium, Ray(*ray))
+        sure, breaks = None, breakpoints(medium, Ray(*ray))
     if np.isinf(breaks).any():
         raise UnsupportedError("an endless ray through a medium without end: give the ray a length", "ray")
-    start, end = breaks[:, :1], breaks[:, -1:]
-    if extent is not None:
-        end = np.clip(extent.end[:, None], start, end)
-    places = [breaks]
+    return breaks, sure
+
+
+def _places_of_detail(medium: AnyMedium, start: np.ndarray, end: np.ndarray) -> list[np.ndarray]:
+    """Return where panels end that are no wider than what a user's function says it has in store."""
     detail = getattr(medium, "detail", np.inf)
-    if detail < np.inf:  # panels no wider than what a user's function says it has in store
-        steps = min(int(np.ceil(np.max(end - start, initial=0.0) / detail)), PANELS)
-        places.append(start + detail * np.arange(1, steps))
-    places += [np.stack(shadow, axis=1) for shadow in shadows]
+    if detail == np.inf:
+        return []
+    steps = min(int(np.ceil(np.max(end - start, initial=0.0) / detail)), PANELS)
+    return [start + detail * np.arange(1, steps)]
+
+
+def _places_of_the_light(medium: AnyMedium, beam: Beam, extent: Extent | None) -> list[np.ndarray]:
+    """Return where the light is seen at kinks of the phase function, where it has edges, and where it is nearest."""
+    places, where = [], beam.where
     if where is not None:
         mu = np.concatenate([airlight_phase(phase).kinks for phase in phase_components(medium.phase)])
         kinks = -where.h[:, None] * (mu / np.sqrt((1 - mu) * (1 + mu)))
@@ -77,37 +107,38 @@ def lit_pieces(
         places.append(np.concatenate([kinks, edges, nearest], axis=1) - where.a[:, None])
     if extent is not None:
         places.append(np.concatenate([extent.places, extent.foot[:, None]], axis=1))
-    every = np.concatenate(places, axis=1)
-    every = np.sort(np.where((every >= start) & (every <= end), every, start), axis=1)
-    every = np.concatenate([every, end], axis=1)
-    owner, k = np.nonzero(every[:, 1:] > every[:, :-1])
-    low, high = every[owner, k], every[owner, k + 1]
-    middle = 0.5 * (low + high)
+    return places
+
+
+def _reached(
+    owner: np.ndarray,
+    middle: np.ndarray,
+    sure: tuple[np.ndarray, np.ndarray] | None,
+    beam: Beam,
+    shadows: list[Shadow],
+) -> np.ndarray:
+    """Return whether the light reaches pieces of the rays `owner` with these middles, (p,): 0, 1, or 1/2 where that is unsure."""
     weight = np.ones(len(owner))
     if sure is not None:  # by rounding, the ray may not be in the shape there
         weight = np.where((middle >= sure[0][owner]) & (middle <= sure[1][owner]), 1.0, 0.5)
-    if where is not None and beam.weight is not None:
-        weight = np.minimum(weight, beam.weight(owner, where.a[owner] + middle))
+    if beam.where is not None and beam.weight is not None:
+        weight = np.minimum(weight, beam.weight(owner, beam.where.a[owner] + middle))
     for shadow in shadows:
         outer, dark, undark, over = (x[owner] for x in shadow)
         weight = np.where((middle > outer) & (middle < over), np.minimum(weight, 0.5), weight)
         weight = np.where((middle > dark) & (middle < undark), 0.0, weight)
-    lit = weight > 0
-    if where is not None:
-        lit &= ~meets_light(where)[owner]
-    owner, low, high, weight = owner[lit], low[lit], high[lit], weight[lit]
-    span, none = high - low, np.full(len(owner), np.nan)
-    if where is not None:
-        a, h = where.a[owner], where.h[owner]
-        (r0, w0, wt0), (r1, w1, wt1) = from_light(a + low, h), from_light(a + high, h)
-        ratio = span / (r0 + r1) * np.where(a + low >= 0, (w0 + w1) / w0, (wt0 + wt1) / wt1)
-        span = np.log1p(ratio)
-        span = np.where(np.isfinite(span), span, 0.0)
-    if extent is None:
-        return Pieces(owner, low, high, span, weight, none, none)
-    foot, reach = extent.foot[owner], extent.reach[owner]
-    span = np.arcsinh((high - foot) / reach) - np.arcsinh((low - foot) / reach)
-    return Pieces(owner, low, high, span, weight, foot, reach)
+    return weight
+
+
+def _span(beam: Beam, owner: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Return the length of pieces in asinh(t/h), (p,); in the distance for light from infinitely far."""
+    span = high - low
+    if beam.where is None:
+        return span
+    a, h = beam.where.a[owner], beam.where.h[owner]
+    (r0, w0, wt0), (r1, w1, wt1) = from_light(a + low, h), from_light(a + high, h)
+    span = np.log1p(span / (r0 + r1) * np.where(a + low >= 0, (w0 + w1) / w0, (wt0 + wt1) / wt1))
+    return np.where(np.isfinite(span), span, 0.0)
 
 
 def points_and_slope(pieces: Pieces, which: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -74,9 +74,16 @@ def gradient(quantity: str | Callable[..., Reference], wrt: str, **arguments: An
     if len(wanted.path) == 1 and not wanted.index:
         return _each(name, function, arguments, wanted)
     slopes = [_one(name, function, arguments, entry) for entry in wanted.entries(arguments)]
+    _require_some(slopes, wanted)
     value, error = (np.stack([getattr(s, what) for s in slopes], axis=-1) for what in ("value", "error"))
     end = value.shape[:-1] + shape
     return Reference(value.reshape(end), error.reshape(end), max(s.method for s in slopes), SOURCE)
+
+
+def _require_some(slopes: list[Reference], wanted: Parameter) -> None:
+    if not slopes:
+        fix = "an empty array has no derivative"
+        raise InvalidValueError(".".join(map(str, wanted.path)), "must stand with one value at least", [], fix)
 
 
 def named(quantity: str | Callable[..., Reference]) -> tuple[str, Callable[..., Reference]]:
@@ -101,6 +108,7 @@ def _each(name: str, function: Callable[..., Reference], arguments: Mapping[str,
         _one(name, function, {**arguments, **{key: float(x[i]) for key, x in flat.items()}}, wanted)
         for i in range(int(np.prod(shape)))
     ]
+    _require_some(slopes, wanted)
     value, error = (np.stack([getattr(s, what) for s in slopes]) for what in ("value", "error"))
     end = shape + value.shape[1:]
     return Reference(value.reshape(end), error.reshape(end), max(s.method for s in slopes), SOURCE)

@@ -61,10 +61,12 @@ def path_length_transform(quantity: str | Callable[..., Reference], s: AxisArray
     require(
         "s", rates, (rates >= lowest) & np.isfinite(rates), f"must be finite and >= {lowest:.9g}, minus the absorption"
     )
-    found = [_weighed(name, function, arguments, float(rate)) for rate in rates.ravel()]
+    found = [_weighed(name, function, arguments, float(rate)) for rate in (rates.ravel() if rates.size else (0.0,))]
     value, error = (np.stack([getattr(x, what) for x in found], axis=-1) for what in ("value", "error"))
     end = value.shape[:-1] + rates.shape
-    return Reference(value.reshape(end), error.reshape(end), found[0].method if found else "", SOURCE)
+    return Reference(
+        value[..., : rates.size].reshape(end), error[..., : rates.size].reshape(end), found[0].method, SOURCE
+    )
 
 
 @declared(

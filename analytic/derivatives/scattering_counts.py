@@ -7,6 +7,7 @@ the probabilities of n scatterings, and the logarithmic derivative is the mean o
 from __future__ import annotations
 
 from collections.abc import Callable
+from inspect import signature
 from typing import Any
 
 import numpy as np
@@ -52,7 +53,8 @@ def scattering_count_law(
     if orders is None:
         raise UnsupportedError(f"the scattering orders of {name} are not known", "quantity")
     share = _positive(albedo)
-    terms, whole = orders(**arguments, count=count), function(albedo=share, **arguments)
+    terms = orders(**_taken(name, orders, function, arguments), count=count)
+    whole = function(albedo=share, **arguments)
     powers = share ** np.arange(count + 1.0)
     sums, off = np.asarray(whole.value)[..., None], np.asarray(whole.error)[..., None]
     if not np.all(sums > off):
@@ -60,6 +62,17 @@ def scattering_count_law(
     value = terms.value * powers / sums
     error = (terms.error * powers + value * off) / (sums - off) + 8 * EPS * value + TINY
     return Reference(value, error, terms.method, SOURCE)
+
+
+def _taken(
+    name: str, orders: Callable[..., Reference], function: Callable[..., Reference], arguments: dict[str, Any]
+) -> dict[str, Any]:
+    """Return the arguments that the orders have; the others must be what the quantity takes when nothing is said."""
+    known, defaults = signature(orders).parameters, signature(function).parameters
+    for argument, value in arguments.items():
+        if argument not in known and not np.all(value == defaults[argument].default):
+            raise UnsupportedError(f"the scattering orders of {name} are known without {argument} alone", argument)
+    return {argument: value for argument, value in arguments.items() if argument in known}
 
 
 @declared(

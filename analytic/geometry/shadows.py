@@ -19,7 +19,7 @@ from fogproof.scene.occluders import Occluder
 
 ROOM = "fogproof.analytic.occluders"
 
-Interval = tuple[np.ndarray, np.ndarray]
+Stretch = tuple[np.ndarray, np.ndarray]
 
 
 class Shadow(NamedTuple):
@@ -51,7 +51,7 @@ def shadow_of_direction(occluder: Occluder, ray: FlatRays, travel: tuple[float, 
     )
 
 
-def _with_margin(occluder: Occluder, scale: np.ndarray, interval: Callable[[Occluder, np.ndarray], Interval]) -> Shadow:
+def _with_margin(occluder: Occluder, scale: np.ndarray, interval: Callable[[Occluder, np.ndarray], Stretch]) -> Shadow:
     reach = scale + np.abs(occluder.center).max() + occluder.radius
     with np.errstate(all="ignore"):
         start, end = interval(occluder, 32 * EPS * reach)
@@ -64,7 +64,7 @@ def dot(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     return np.sum(x * y, axis=-1)
 
 
-def where_positive(a: np.ndarray, b: np.ndarray, c: np.ndarray, forward1: Any = 0.0, forward0: Any = 1.0) -> Interval:
+def where_positive(a: np.ndarray, b: np.ndarray, c: np.ndarray, forward1: Any = 0.0, forward0: Any = 1.0) -> Stretch:
     """Return the interval where a t^2 + 2 b t + c >= 0 and forward1 t + forward0 >= 0; NaN if there is none.
 
     The quadratic is positive inside a double cone or a cylinder, and the linear form in the nappe that counts.
@@ -83,9 +83,7 @@ def where_positive(a: np.ndarray, b: np.ndarray, c: np.ndarray, forward1: Any = 
     return low, high
 
 
-def behind(
-    cone: Interval, enter: np.ndarray, leave: np.ndarray, before: Callable[[np.ndarray], np.ndarray]
-) -> Interval:
+def behind(cone: Stretch, enter: np.ndarray, leave: np.ndarray, before: Callable[[np.ndarray], np.ndarray]) -> Stretch:
     """Return the part of the cone behind the ball, and in it: a line that meets the ball ends or begins at its front."""
     low, high = cone
     middle = np.where(np.isinf(low) | np.isinf(high), np.inf, 0.5 * (low + high))
@@ -96,7 +94,7 @@ def behind(
     return np.where(in_front, np.nan, start), np.where(in_front, np.nan, end)
 
 
-def beyond(low: np.ndarray, high: np.ndarray, past0: np.ndarray, past1: np.ndarray) -> Interval:
+def beyond(low: np.ndarray, high: np.ndarray, past0: np.ndarray, past1: np.ndarray) -> Stretch:
     """Return the part of the interval where past0 + past1 t >= 0."""
     crossing = -past0 / past1
     low = np.where(past1 > 0, np.maximum(low, crossing), low)

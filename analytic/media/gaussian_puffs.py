@@ -16,7 +16,7 @@ from fogproof.analytic.arithmetic.panel_rule import NODES, WEIGHTS
 from fogproof.analytic.geometry.rays import Thickness
 from fogproof.analytic.media.breakpoints import Breaks
 from fogproof.analytic.media.coefficients import Coefficients, Points, by_albedo
-from fogproof.analytic.proven.balls import Ball, flint, rational, vector
+from fogproof.analytic.proven.balls import ProvenBall, flint, rational, vector
 from fogproof.analytic.proven.pieces import Piece, dot
 from fogproof.scene import Ray
 from fogproof.scene.media.gaussian_puffs import GaussianPuffs
@@ -115,7 +115,7 @@ def pieces(medium: GaussianPuffs, origin: np.ndarray, direction: np.ndarray, len
         p2, w2 = dot(offset, offset) - along * along * square, rational(w) ** 2
         puffs.append((along, p2 / (2 * w2), square / (2 * w2), rational(density)))
 
-    def tau(z: Any) -> Ball:
+    def tau(z: Any) -> ProvenBall:
         total = z * 0
         for along, exponent, steep, density in puffs:
             root = arb(steep).sqrt()
@@ -123,7 +123,7 @@ def pieces(medium: GaussianPuffs, origin: np.ndarray, direction: np.ndarray, len
             total += peak * (((z - arb(along)) * root).erf() + (arb(along) * root).erf())
         return total
 
-    def endless() -> Ball:
+    def endless() -> ProvenBall:
         total = arb(0)
         for along, exponent, steep, density in puffs:
             root = arb(steep).sqrt()

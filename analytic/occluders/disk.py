@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from fogproof.analytic.geometry.shadows import Interval, beyond, dot, where_positive
+from fogproof.analytic.geometry.shadows import Stretch, beyond, dot, where_positive
 from fogproof.scene.occluders import Disk
 
 
-def from_point(occluder: Disk, origin: np.ndarray, d: np.ndarray, light: np.ndarray, margin: np.ndarray) -> Interval:
+def from_point(occluder: Disk, origin: np.ndarray, d: np.ndarray, light: np.ndarray, margin: np.ndarray) -> Stretch:
     """Return what the occluder hides from a point, its radius larger by `margin`."""
     X, c = origin - light, np.array(occluder.center) - light
     ahead = -dot(X, d)  # distances are counted from the foot of the perpendicular, then from the origin
@@ -31,7 +31,7 @@ def from_point(occluder: Disk, origin: np.ndarray, d: np.ndarray, light: np.ndar
     return np.where(none, np.nan, low + ahead), np.where(none, np.nan, high + ahead)
 
 
-def from_direction(occluder: Disk, origin: np.ndarray, d: np.ndarray, v: np.ndarray, margin: np.ndarray) -> Interval:
+def from_direction(occluder: Disk, origin: np.ndarray, d: np.ndarray, v: np.ndarray, margin: np.ndarray) -> Stretch:
     """Return what the occluder hides from parallel light, its radius larger by `margin`."""
     X = origin - np.array(occluder.center)
     R = occluder.radius + margin

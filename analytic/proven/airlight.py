@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from fogproof.analytic.phase.kinds import ROOM, weighted_parts
-from fogproof.analytic.proven.balls import Ball, flint, proven, rational, reference
+from fogproof.analytic.proven.balls import ProvenBall, flint, proven, rational, reference
 from fogproof.contracts import Reference
 from fogproof.errors import UnsupportedError, shorten
 from fogproof.scene.kinds import given
@@ -30,7 +30,7 @@ def rigorous_airlight(
     return reference([airlight_ball(*row, phase) for row in rows], h.shape, SOURCE)
 
 
-def airlight_ball(sigma_t: float, h: float, a: float, b: float, phase: PhaseFunction) -> Ball:
+def airlight_ball(sigma_t: float, h: float, a: float, b: float, phase: PhaseFunction) -> ProvenBall:
     """Return one airlight integral [1/m] as a ball of 38 digits."""
     arb = flint().arb
     factor(phase, flint().acb(0))  # refuses what has no formula, here: inside `acb.integral` an exception is lost
@@ -65,7 +65,7 @@ def _mean(phase: PhaseFunction, name: str, *arguments: Any) -> Any:
     return total
 
 
-def _beside(sigma: Any, h: Any, a: Any, b: Any, phase: PhaseFunction) -> Ball:
+def _beside(sigma: Any, h: Any, a: Any, b: Any, phase: PhaseFunction) -> ProvenBall:
     arb, acb = flint().arb, flint().acb
     start = arb(a / h).asinh()
     first = arb(h) * start.exp()
@@ -89,7 +89,7 @@ def _beside(sigma: Any, h: Any, a: Any, b: Any, phase: PhaseFunction) -> Ball:
     return front * (inside + rest)
 
 
-def _on_the_line(sigma: Any, _h: Any, a: Any, b: Any, phase: PhaseFunction) -> Ball:
+def _on_the_line(sigma: Any, _h: Any, a: Any, b: Any, phase: PhaseFunction) -> ProvenBall:
     """Return the integral for h = 0: r = -t and all path lengths equal before the light, r = t behind it."""
     arb, acb = flint().arb, flint().acb
     ahead = a < 0

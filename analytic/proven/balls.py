@@ -24,7 +24,7 @@ BITS = 128
 MOST_BITS = 1 << 15
 """Working precision at which an answer that is still too wide is given up."""
 
-Ball = Any
+ProvenBall = Any
 """A `flint.arb`; python-flint has no types."""
 
 
@@ -47,7 +47,7 @@ def vector(x: Any) -> list[Any]:
     return [rational(0.0 if abs(v) < SMALL else v) for v in np.asarray(x, float)]
 
 
-def proven(compute: Callable[[], Ball]) -> Ball:
+def proven(compute: Callable[[], ProvenBall]) -> ProvenBall:
     """Return the ball of `compute()`, repeated with more working bits until it is BITS accurate; inf is a result too."""
     ctx = flint().ctx
     bits = 2 * BITS
@@ -60,7 +60,7 @@ def proven(compute: Callable[[], Ball]) -> Ball:
     raise UnsupportedError(f"no enclosure with {MOST_BITS} bits: ask without rigorous=True")
 
 
-def reference(balls: Iterable[Ball], shape: tuple[int, ...], source: str) -> Reference:
+def reference(balls: Iterable[ProvenBall], shape: tuple[int, ...], source: str) -> Reference:
     """Return the balls as a `Reference`: the nearest float64, and a bound of its distance from all of the ball."""
     rounded = [_rounded(ball) for ball in balls]
     value, error = (np.array(column, float).reshape(shape) for column in zip(*rounded, strict=True)) if rounded else (
@@ -70,7 +70,7 @@ def reference(balls: Iterable[Ball], shape: tuple[int, ...], source: str) -> Ref
     return Reference(value, error, "proven by ball arithmetic", source)
 
 
-def _rounded(ball: Ball) -> tuple[float, float]:
+def _rounded(ball: ProvenBall) -> tuple[float, float]:
     if not ball.is_finite():
         return math.inf, 0.0
     value = float(ball.mid())

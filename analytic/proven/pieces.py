@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from fogproof.analytic.proven.balls import Ball, flint, rational
+from fogproof.analytic.proven.balls import ProvenBall, flint, rational
 from fogproof.errors import UnsupportedError
 from fogproof.scene import AnyMedium
 from fogproof.scene.kinds import given
@@ -34,7 +34,7 @@ class Piece:
     """
 
     length: Any
-    tau: Ball
+    tau: ProvenBall
     albedo: Any
     emission: Any
     sigma: Any = None

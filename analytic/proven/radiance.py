@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fogproof.analytic.geometry.rays import channels_of
-from fogproof.analytic.proven.balls import Ball, flint, proven, rational, reference
+from fogproof.analytic.proven.balls import ProvenBall, flint, proven, rational, reference
 from fogproof.analytic.proven.pieces import Piece, horner, pieces
 from fogproof.contracts import Reference
 from fogproof.errors import InvalidValueError, UnsupportedError
@@ -22,7 +22,7 @@ SOURCE = "Johansson 2017, Arb; Johansson 2018, Numerical integration in arbitrar
 class Proven(NamedTuple):
     """Balls, one an element in C order, and the shape of their array."""
 
-    balls: list[Ball]
+    balls: list[ProvenBall]
     shape: tuple[int, ...]
 
     def reference(self) -> Reference:
@@ -47,14 +47,14 @@ def proven_radiance(
     ambient = nonnegative_channels("ambient", ambient, "W/(m^2 sr)")
     background = nonnegative_channels("background", background, "W/(m^2 sr)")
 
-    def radiance(parts: list[Piece], c: int) -> Ball:
+    def radiance(parts: list[Piece], c: int) -> ProvenBall:
         L_i, L_bg = (rational(x[c] if isinstance(x, tuple) else x) for x in (ambient, background))
         return _composed(parts, L_i, L_bg, times_sigma_a)
 
     return _over_rays(medium, ray, channels_of(medium, ambient=ambient, background=background), radiance)
 
 
-def _composed(parts: list[Piece], ambient: Any, background: Any, times_sigma_a: bool) -> Ball:
+def _composed(parts: list[Piece], ambient: Any, background: Any, times_sigma_a: bool) -> ProvenBall:
     """Return the radiance of pieces composed from the camera on, at the current precision."""
     total, survived = flint().arb(0), flint().arb(1)
     for part in parts:
@@ -63,12 +63,12 @@ def _composed(parts: list[Piece], ambient: Any, background: Any, times_sigma_a: 
     return total + survived * background
 
 
-def _total(parts: list[Piece]) -> Ball:
+def _total(parts: list[Piece]) -> ProvenBall:
     return sum((part.tau for part in parts), flint().arb(0))
 
 
 def _over_rays(
-    medium: AnyMedium, ray: Ray, channels: int | None, compute: Callable[[list[Piece], int], Ball]
+    medium: AnyMedium, ray: Ray, channels: int | None, compute: Callable[[list[Piece], int], ProvenBall]
 ) -> Proven:
     """Enclose `compute(pieces, channel)` for every ray and channel."""
     if not isinstance(ray, Ray):
@@ -76,14 +76,14 @@ def _over_rays(
     media = [medium] if medium.channels is None else [medium_of_channel(medium, c) for c in range(medium.channels)]
     rows = zip(ray.origin.reshape(-1, 3), ray.direction.reshape(-1, 3), ray.length.reshape(-1), strict=True)
 
-    def ball(row: tuple[np.ndarray, np.ndarray, float], c: int) -> Ball:
+    def ball(row: tuple[np.ndarray, np.ndarray, float], c: int) -> ProvenBall:
         return proven(lambda: compute(pieces(media[c % len(media)], *row), c))
 
     balls = [ball(row, c) for row in rows for c in range(channels or 1)]
     return Proven(balls, ray.shape if channels is None else (*ray.shape, channels))
 
 
-def _gain(part: Piece, ambient: Any, times_sigma_a: bool) -> Ball:
+def _gain(part: Piece, ambient: Any, times_sigma_a: bool) -> ProvenBall:
     """Return the radiance that a piece sends to its start."""
     if part.extinction is not None:
         return _inside_a_voxel(part, ambient, times_sigma_a)
@@ -94,7 +94,7 @@ def _gain(part: Piece, ambient: Any, times_sigma_a: bool) -> Ball:
     return gain + part.emission * _reach(part, gone) if part.emission else gain
 
 
-def _reach(part: Piece, gone: Ball) -> Ball:
+def _reach(part: Piece, gone: ProvenBall) -> ProvenBall:
     """Return the integral of exp(-tau(z)) over a piece [m]."""
     if part.sigma is not None:
         if part.sigma:
@@ -105,7 +105,7 @@ def _reach(part: Piece, gone: Ball) -> Ball:
     return _integral(survived, part.length)
 
 
-def _inside_a_voxel(part: Piece, ambient: Any, times_sigma_a: bool) -> Ball:
+def _inside_a_voxel(part: Piece, ambient: Any, times_sigma_a: bool) -> ProvenBall:
     """Return the gain where every field is a polynomial: so is the source, exactly."""
     scattering = part.albedo * part.extinction
     emitted = (part.extinction - scattering) * part.emission if times_sigma_a else part.emission
@@ -117,7 +117,7 @@ def _inside_a_voxel(part: Piece, ambient: Any, times_sigma_a: bool) -> Ball:
     return _integral(lambda z: survived(z) * gained(z), part.length)
 
 
-def _integral(function: Any, length: Any) -> Ball:
+def _integral(function: Any, length: Any) -> ProvenBall:
     """Return the integral of an entire function over [0, length]."""
     acb = flint().acb
     if length is None:

@@ -16,7 +16,7 @@ from fogproof.analytic.arithmetic.error_free import EPS
 from fogproof.analytic.variance.voxel_ray import EstimateMoments, VoxelRay
 from fogproof.errors import UnsupportedError
 
-Law = list[tuple[Fraction, Fraction]]
+AtomLaw = list[tuple[Fraction, Fraction]]
 """(probability, optical depth found)."""
 
 LEVELS = 20
@@ -159,7 +159,7 @@ def _depth(ray: VoxelRay, points: int, offset: Fraction) -> Fraction:
     return total * sum(ray.length, Fraction(0)) / points
 
 
-def _law(ray: VoxelRay, points: int) -> Law:
+def _law(ray: VoxelRay, points: int) -> AtomLaw:
     steps = sorted({Fraction(0), Fraction(1), *_steps(ray, points)})
     law: dict[Fraction, Fraction] = {}
     for low, high in pairwise(steps):

@@ -6,7 +6,7 @@ piece: its law is written out and summed, or integrated in closed form. Nothing 
 
 from __future__ import annotations
 
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from fogproof.analytic.declaration import quantity
 from fogproof.analytic.variance import comb_estimates, walk_estimates
 from fogproof.analytic.variance.voxel_ray import EstimateMoments, VoxelRay, voxel_ray
 from fogproof.contracts import Reference
-from fogproof.errors import InvalidValueError
+from fogproof.errors import InvalidValueError, UnsupportedError
 from fogproof.scene.arrays import AxisArray
 from fogproof.validate import number
 
@@ -119,7 +119,16 @@ def _answer(value: float, error: float, estimate: str) -> Reference:
     return Reference(np.asarray(value), np.asarray(error + TINY), f"the law of {estimate}, summed", SOURCE)
 
 
-def _moments(
+def _moments(ray: VoxelRay, estimate: Estimate, *parameters: Any) -> EstimateMoments:
+    """Return the moments of the estimator, or refuse where one of them is no float64."""
+    try:
+        return _moments_of(ray, estimate, *parameters)
+    except OverflowError:
+        what = f"a moment of the estimate {estimate!r} is beyond 1.8e308"
+        raise UnsupportedError(f"{what}: take a larger majorant, or more points", "estimate") from None
+
+
+def _moments_of(
     ray: VoxelRay,
     estimate: Estimate,
     majorant: float | None,

@@ -42,11 +42,11 @@ class Sampled(NamedTuple):
     arriving: np.ndarray
 
 
-Sampler = Callable[[np.ndarray, np.ndarray], Sampled]
+LightSampler = Callable[[np.ndarray, np.ndarray], Sampled]
 """(points (3, n), uniforms (n, 2)) -> directions to a light with extent."""
 
 
-def sampler(light: Light) -> Sampler | None:
+def sampler(light: Light) -> LightSampler | None:
     """Return how directions to a light with extent are drawn; None for others."""
     sample = given(light, ROOM, "sample")
     return None if sample is None else lambda x, u: sample(light, x, u)

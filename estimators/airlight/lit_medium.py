@@ -10,7 +10,7 @@ from typing import get_args
 import numpy as np
 
 from fogproof.errors import InvalidValueError, UnsupportedError
-from fogproof.estimators.airlight.lighting import Illumination, Sampler, illumination, met, sampler, towards
+from fogproof.estimators.airlight.lighting import Illumination, LightSampler, illumination, met, sampler, towards
 from fogproof.estimators.airlight.occlusion import lit
 from fogproof.estimators.airlight.shadow_rays import ShadowRays, shadow_transmittance
 from fogproof.estimators.airlight.shapes import through
@@ -119,7 +119,8 @@ class LitMedium:
         if uniform is not None and self.shape == EVERYWHERE and self.shadow_rays == "exact" and not self.occluders:
             value = self.albedo * self.extinction.sigma(t) * phase_value(self.phase, mu) * irradiance
             sigma_t = float(uniform(self.medium))
-            return value * np.exp(-sigma_t * distance) if sigma_t > 0 else value, np.ones_like(t)
+            with np.errstate(over="ignore"):  # a thickness beyond 1.8e308 is as good as inf
+                return value * np.exp(-sigma_t * distance) if sigma_t > 0 else value, np.ones_like(t)
         x = self.points(t)
         w = towards(self.light, x)
         value = self._scattering(t, x, mu) * irradiance
@@ -134,7 +135,7 @@ class LitMedium:
         return albedo * self.extinction.sigma(t) * phase_value_at(self.medium.phase, x, mu)
 
     def _scattered_from_extent(
-        self, sample: Sampler, t: np.ndarray, rng: np.random.Generator
+        self, sample: LightSampler, t: np.ndarray, rng: np.random.Generator
     ) -> tuple[np.ndarray, np.ndarray]:
         """One direction to a light with extent is drawn for each place, so that each of them looks along one way."""
         x = self.points(t)

@@ -49,7 +49,8 @@ class Constant:
 
     def depth(self, t: np.ndarray) -> np.ndarray:
         """Return the optical depth."""
-        return self.sigma_t * t if self.sigma_t > 0 else np.zeros_like(t)
+        with np.errstate(over="ignore"):  # beyond 1.8e308 nothing is transmitted, as at inf
+            return self.sigma_t * t if self.sigma_t > 0 else np.zeros_like(t)
 
     def reach(self, depth: np.ndarray) -> np.ndarray:
         """Return the distance at which the optical depth is reached."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from fogproof.reports.charts.colours import GRID, INK
 from fogproof.reports.charts.scale import Scale, Values
-from fogproof.reports.charts.sheet import FONT_SIZE, Dots, Group, Mark, Shape, Sheet, Words
+from fogproof.reports.charts.sheet import FONT_SIZE, Dots, Group, Mark, Outline, Sheet, Words
 from fogproof.reports.charts.sheet_png import text_width
 
 DASHED = (7.0, 4.0)
@@ -37,10 +37,10 @@ class Axes:
         add = self.sheet.shapes.append
         if rules:
             grid = [[(x, top), (x, bottom)] for x, _ in xs] + [[(left, y), (left + width, y)] for y, _ in ys]
-            add(Shape(grid, GRID, 1))
+            add(Outline(grid, GRID, 1))
         add(Group(self.box, self._inside))
         marks = [[(x, bottom), (x, bottom + 4)] for x, _ in xs] + [[(left - 4, y), (left, y)] for y, _ in ys]
-        add(Shape([[(left, top), (left, bottom), (left + width, bottom)], *marks], INK, 1))
+        add(Outline([[(left, top), (left, bottom), (left + width, bottom)], *marks], INK, 1))
         if across:  # axes without a label share the ticks of those below
             self.sheet.shapes += [Words(x, bottom + 6 + FONT_SIZE, name, INK, "middle") for x, name in xs]
             add(Words(left + width / 2, bottom + 12 + 2 * FONT_SIZE, across, INK, "middle"))
@@ -65,7 +65,7 @@ class Axes:
         right, bottom = left + width, top + height
         self.sheet.shapes.append(Group(self.box, self._inside))
         ticks = [(bottom - height * float(self.y([value])[0]), name) for value, name in self.y.ticks(5)]
-        self.sheet.shapes.append(Shape([[(right, y), (right + 4, y)] for y, _ in ticks], INK, 1))
+        self.sheet.shapes.append(Outline([[(right, y), (right + 4, y)] for y, _ in ticks], INK, 1))
         self.sheet.shapes += [Words(right + 7, y + 0.36 * FONT_SIZE, name, INK) for y, name in ticks]
         widest = max((text_width(name, FONT_SIZE) for _, name in ticks), default=0)
         self.sheet.shapes.append(
@@ -91,7 +91,7 @@ class Axes:
                 pieces[-1].append(point)
         pieces = [piece for piece in pieces if len(piece) > 1]
         if pieces:
-            self._inside.append(Shape(pieces, colour, width, dash))
+            self._inside.append(Outline(pieces, colour, width, dash))
 
     def band(self, x: Values, low: Values, high: Values, colour: str, opacity: float = 0.25) -> None:
         """Fill between two curves where both are numbers."""
@@ -99,7 +99,7 @@ class Axes:
         if known.sum() > 1:
             x, low, high = (np.asarray(values, dtype=float)[known] for values in (x, low, high))
             around = self.at(x, low) + self.at(x, high)[::-1]
-            self._inside.append(Shape([around], fill=colour, opacity=opacity))
+            self._inside.append(Outline([around], fill=colour, opacity=opacity))
 
     def stairs(
         self, values: Values, edges: Values, colour: str, dash: tuple[float, float] | None = None, fill: bool = False
@@ -124,7 +124,7 @@ class Axes:
         for (a, b), column in zip(pairwise(x), colours, strict=True):
             for (c, d), colour in zip(pairwise(y), column, strict=True):
                 alike.setdefault(colour, []).append([(a, c), (b, c), (b, d), (a, d)])
-        self._inside += [Shape(paths, fill=colour, crisp=True) for colour, paths in alike.items()]
+        self._inside += [Outline(paths, fill=colour, crisp=True) for colour, paths in alike.items()]
 
 
 def mark(at: Sequence[tuple[float, float]], colour: str, marker: Marker = "dot", size: float = 4) -> Mark:
@@ -133,9 +133,9 @@ def mark(at: Sequence[tuple[float, float]], colour: str, marker: Marker = "dot",
         return Dots(at, colour, size)
     if marker == "cross":
         strokes = [[(x - size, y - size), (x + size, y + size)] for x, y in at]
-        return Shape([*strokes, *[[(x - size, y + size), (x + size, y - size)] for x, y in at]], colour, 2)
+        return Outline([*strokes, *[[(x - size, y + size), (x + size, y - size)] for x, y in at]], colour, 2)
     corners = 3 if marker == "triangle" else 4
     start = np.pi / 4 if marker == "square" else np.pi / 2
     angle = start + 2 * np.pi * np.arange(corners) / corners
     outline = list(zip((size * np.cos(angle)).tolist(), (-size * np.sin(angle)).tolist(), strict=True))
-    return Shape([[(x + a, y + b) for a, b in outline] for x, y in at], fill=colour)
+    return Outline([[(x + a, y + b) for a, b in outline] for x, y in at], fill=colour)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from textwrap import wrap
 
 from fogproof.reports.charts.colours import INK
-from fogproof.reports.charts.sheet import FONT_SIZE, Shape, Sheet, Words
+from fogproof.reports.charts.sheet import FONT_SIZE, Outline, Sheet, Words
 
 _LINE = 1.15 * FONT_SIZE
 _GAP = 0.3 * FONT_SIZE
@@ -47,6 +47,6 @@ def write_labels(sheet: Sheet, labels: Sequence[EndLabel], right: float, top: fl
         lowest = tops[k]
     for label, start, height in zip(order, tops, heights, strict=True):
         middle, x = start + (height - _GAP) / 2, right + 26
-        sheet.shapes.append(Shape([[label.end, (right + 8, middle), (x - 4, middle)]], label.colour, 1.2, label.dash))
+        sheet.shapes.append(Outline([[label.end, (right + 8, middle), (x - 4, middle)]], label.colour, 1.2, label.dash))
         for number, line in enumerate(lines_of(label.text, width)):
             sheet.shapes.append(Words(x, start + (number + 0.8) * _LINE, line, INK))

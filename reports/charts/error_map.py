@@ -12,7 +12,7 @@ import numpy as np
 from fogproof.reports.charts.axes import Axes
 from fogproof.reports.charts.colours import INK, diverging
 from fogproof.reports.charts.scale import Scale
-from fogproof.reports.charts.sheet import FONT_SIZE, Shape, Sheet, Words
+from fogproof.reports.charts.sheet import FONT_SIZE, Outline, Sheet, Words
 from fogproof.reports.text import label
 
 PANEL, GAP, LEFT, BELOW, ABOVE = 250.0, 26.0, 84.0, 86.0, 26.0
@@ -75,19 +75,19 @@ class ErrorMap:
                 alike.setdefault(colour, []).append([a, (b[0], a[1]), b, (a[0], b[1])])
                 start = end
         for colour, paths in alike.items():
-            axes.sheet.shapes.append(Shape(paths, fill=colour, crisp=True))
+            axes.sheet.shapes.append(Outline(paths, fill=colour, crisp=True))
 
     def _ticks(self, sheet: Sheet, left: float, labelled: bool) -> None:
         for i in places(len(self.values[0])):
             x = left + PANEL * (i + 0.5) / len(self.values[0])
-            sheet.shapes.append(Shape([[(x, ABOVE + PANEL), (x, ABOVE + PANEL + 4)]], INK, 1))
+            sheet.shapes.append(Outline([[(x, ABOVE + PANEL), (x, ABOVE + PANEL + 4)]], INK, 1))
             words = short(self.values[0][i])
             sheet.shapes.append(Words(x + 5, ABOVE + PANEL + 8 + 7.2 * len(words), words, INK, turned=True, size=12))
         if not labelled:
             return
         for j in places(len(self.values[1])):
             y = ABOVE + PANEL - PANEL * (j + 0.5) / len(self.values[1])
-            sheet.shapes.append(Shape([[(left - 4, y), (left, y)]], INK, 1))
+            sheet.shapes.append(Outline([[(left - 4, y), (left, y)]], INK, 1))
             sheet.shapes.append(Words(left - 7, y + 4, short(self.values[1][j]), INK, "end", size=12))
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from fogproof.reports.charts.axes import mark
 from fogproof.reports.charts.colours import GRID, INK
-from fogproof.reports.charts.sheet import FONT_SIZE, Shape, Sheet, Words
+from fogproof.reports.charts.sheet import FONT_SIZE, Outline, Sheet, Words
 from fogproof.reports.charts.sheet_png import text_width
 
 
@@ -31,10 +31,10 @@ def legend(sheet: Sheet, keys: Sequence[Key], left: float, top: float, width: fl
             x, y = left, y + 1.4 * FONT_SIZE
         middle = y - 0.36 * FONT_SIZE
         if key.kind == "line" or key.joined:
-            sheet.shapes.append(Shape([[(x, middle), (x + 26, middle)]], key.colour, 2, key.dash))
+            sheet.shapes.append(Outline([[(x, middle), (x + 26, middle)]], key.colour, 2, key.dash))
         if key.kind == "area":
             corners = [(x, middle - 5), (x + 26, middle - 5), (x + 26, middle + 5), (x, middle + 5)]
-            sheet.shapes.append(Shape([corners], fill=key.colour, opacity=0.4 if key.colour != GRID else 1))
+            sheet.shapes.append(Outline([corners], fill=key.colour, opacity=0.4 if key.colour != GRID else 1))
         elif key.kind != "line":
             sheet.shapes.append(mark([(x + 13, middle)], key.colour, key.kind, 5))  # type: ignore[arg-type]
         sheet.shapes.append(Words(x + 32, y, key.text, INK))

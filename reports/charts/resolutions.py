@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import takewhile
 from typing import ClassVar
 
 import numpy as np
@@ -13,9 +14,12 @@ from fogproof.reports.charts.colours import EXPECTED, OBSERVED, THIRD
 from fogproof.reports.charts.legend import Key, legend
 from fogproof.reports.charts.scale import Scale, spanning
 from fogproof.reports.charts.sheet import Sheet
+from fogproof.reports.charts.sheet_png import text_width
 from fogproof.reports.text import label
 
-_NAMED = 48
+_NAMED = 48  # passes that have a line each
+_NAME = 12.0  # size of a name [px]
+_LONGEST = 0.55  # of the width, for names
 
 
 @dataclass(frozen=True)
@@ -57,9 +61,16 @@ class Resolutions:
         ]
         chosen = {kind: looks[index % len(looks)] for index, kind in enumerate(kinds)}
         counts = [sum(its == kind for _, its, _ in rows) for kind in kinds]
-        keys = [Key(label(kind, 60), *chosen[kind]) for kind in kinds]
+        keys = [Key(label(kind, 80), *chosen[kind]) for kind in kinds]
         top = (legend(sheet, keys, 8, 0, sheet.width - 8) if named else 4.0) + 4
-        left = 0.42 * sheet.width
+        folder = _shared([name for name, _, _ in rows]) if named else ""
+        lines = (
+            [name.removeprefix(folder) for name, _, _ in rows]
+            if named
+            else [f"{k} ({n})" for k, n in zip(kinds, counts, strict=True)]
+        )
+        lines = [_cut(line, _LONGEST * sheet.width) for line in lines]
+        left = 16 + max(text_width(line, _NAME) for line in lines)
         y = Scale(len(rows), -1) if named else Scale(len(kinds) - 0.5, -0.5)
         across, beyond = _within(values)
         rows = [(name, kind, min(max(value, across.low), across.high)) for name, kind, value in rows]
@@ -69,17 +80,28 @@ class Resolutions:
             at = np.array([(value, y) for y, (_, its, value) in enumerate(rows) if its == kind])
             slope = number + 0.35 - 0.7 * (np.arange(count) + 0.5) / count
             axes.points(at[:, 0], at[:, 1] if named else slope, *chosen[kind])
-        if named:
-            axes.names([label(name, 30) for name, _, _ in rows], np.arange(len(rows)))
-        else:
-            axes.names(
-                [f"{label(kind, 30)} ({n})" for kind, n in zip(kinds, counts, strict=True)], np.arange(len(kinds))
-            )
-        named_kinds = ", ".join(label(kind) for kind in kinds)
+        axes.names(lines, np.arange(len(lines)))
+        named_kinds = ", ".join(label(kind, 80) for kind in kinds)
         return (
             f"{len(rows)} passes: errors above {min(values):.2g} to {max(values):.2g} ({named_kinds}) would have shown, "
-            f"relative to what they are errors of.{f' {beyond} lie beyond the axis and are drawn at its end.' if beyond else ''}"
+            f"relative to what they are errors of.{f' All names begin with {folder}' if folder else ''}"
+            f"{f' {beyond} lie beyond the axis and are drawn at its end.' if beyond else ''}"
         )
+
+
+def _shared(names: Sequence[str]) -> str:
+    """Return the folder that all names lie in, with its slash; "" if there is none, or one name alone."""
+    folders = zip(*(name.split("/")[:-1] for name in names), strict=False)
+    shared = takewhile(lambda parts: len(set(parts)) == 1, folders)
+    return "".join(f"{parts[0]}/" for parts in shared) if len(names) > 1 else ""
+
+
+def _cut(text: str, width: float) -> str:
+    """Return a text on one line, its middle left out if it is wider than `width` px."""
+    limit = max(len(text), 4)
+    while limit > 4 and text_width(label(text, limit), _NAME) > width:
+        limit -= 1
+    return label(text, limit)
 
 
 def _within(values: Sequence[float]) -> tuple[Scale, int]:

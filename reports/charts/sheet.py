@@ -20,7 +20,7 @@ Points = Sequence[tuple[float, float]]
 
 
 @dataclass(frozen=True)
-class Shape:
+class Outline:
     """Lines through points [px, y down]; filled if `fill` is a colour, drawn if `stroke` is one.
 
     crisp  filled rectangles whose edges are not smoothed: cells that touch show no seam
@@ -57,7 +57,7 @@ class Words:
     size: float = FONT_SIZE
 
 
-Mark = Shape | Dots | Words
+Mark = Outline | Dots | Words
 
 
 @dataclass(frozen=True)

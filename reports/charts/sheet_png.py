@@ -11,7 +11,7 @@ from math import hypot
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fogproof.reports.charts.sheet import Dots, Group, Mark, Points, Shape, Sheet, Words
+from fogproof.reports.charts.sheet import Dots, Group, Mark, Outline, Points, Sheet, Words
 from fogproof.text import visible
 
 if TYPE_CHECKING:
@@ -65,7 +65,7 @@ def _draw(image: Image.Image, shapes: Sequence[Mark | Group], scale: float, corn
                 for a, b in places(at):
                     r = scale * radius
                     pens[0].ellipse((a - r, b - r, a + r, b + r), colour)
-            case Shape():
+            case Outline():
                 pen = pens[shape.opacity < 1]
                 alpha = f"{round(255 * shape.opacity):02x}" if shape.opacity < 1 else ""
                 for points in shape.paths:

@@ -13,6 +13,7 @@ from fogproof.errors import InvalidInputError, NotInstalledError, shorten, stop_
 from fogproof.reports.charts.pictures import Picture
 from fogproof.reports.files import write_file
 from fogproof.reports.gallery.airlight import FoggyScene, Glow, SamplesAroundALight
+from fogproof.reports.gallery.errors import ErrorAgainstWork
 from fogproof.reports.gallery.media import Fog, Transmittances, closed_media, tracked_media
 from fogproof.reports.gallery.multiple import AerialView, Fire, Snow
 from fogproof.reports.gallery.phase import Approximation, LinearPanel, PolarPanel, SphereSizes
@@ -40,6 +41,7 @@ def drawings(seed: int) -> dict[str, tuple[str, Plot]]:
         "fog": ("Fog over distance", Fog(stream("fog"))),
         "foggy-scene": ("A scene in fog", FoggyScene()),
         "samples-around-a-light": ("Samples around a light", SamplesAroundALight(stream("samples"))),
+        "error-against-work": ("Error against work", ErrorAgainstWork(stream("errors"))),
         "glow": ("The glow of a light", Glow(stream("glow"))),
         "snow": ("Snow is white: multiple scattering", Snow(stream("snow"))),
         "fire": ("Fire", Fire(stream("fire"))),

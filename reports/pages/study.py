@@ -17,6 +17,7 @@ from fogproof.reports.records.runs import Case, Status
 from fogproof.reports.records.studies import as_run
 from fogproof.reports.records.study_record import Answer, SceneRecord, StudyEntry, StudyRecord, TargetRecord
 from fogproof.reports.text import file_stem
+from fogproof.text import unfinished
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,7 @@ def write_study_page(study: StudyRecord, folder: Path) -> Path:
         for _, picture in figures:
             picture.save(folder / "figures")
         rows = [StudyRow(entry, cases[f"{scene.name} / {entry.name}"]) for entry in scene.estimators]
-        place = {name: k for k, name in enumerate((*scene.answer.ranking, *scene.answer.out))}
+        place = {name: k for k, name in enumerate((*scene.answer.ranking, *scene.answer.unranked))}
         rows.sort(key=lambda row: place.get(row.entry.name, len(place)))
         shown.append(SceneShown(scene, tuple(rows), figures))
     counts = {status: sum(case.status == status for case in run.cases) for status in STATUSES}
@@ -78,13 +79,14 @@ def write_study_page(study: StudyRecord, folder: Path) -> Path:
 def headline(study: StudyRecord, counts: Mapping[Status, int]) -> tuple[str, str]:
     """Return the outcome of a study in words: a sentence that stands alone, and the counts behind it."""
     total = sum(counts.values())
-    missing = study.batches.get("planned", 0) - study.batches.get("done", 0)
+    done, planned = study.batches.get("done", 0), study.batches.get("planned", 0)
+    left = unfinished(done, planned, study.state == "interrupted")
     if not total:
         first = "No estimator was studied"
     elif counts["rejected"]:
         first = f"{counts['rejected']} of {total} estimators {'is' if counts['rejected'] == 1 else 'are'} biased"
-    elif study.failures or missing:
-        first = f"The study is incomplete: {missing} of {study.batches.get('planned', 0)} batches are missing"
+    elif left:
+        first = ""
     elif study.history and study.history.worse:
         first = "Something came out worse than before"
     elif counts["inconclusive"]:
@@ -92,6 +94,8 @@ def headline(study: StudyRecord, counts: Mapping[Status, int]) -> tuple[str, str
         first = f"No bias was found, but {n} of {total} estimators {'is' if n == 1 else 'are'} not judged unbiased yet"
     else:
         first = "Every estimator came out as expected"
+    if left:
+        first = f"{left} batches are drawn" + (f"; {first[0].lower()}{first[1:]}" if first else "")
     words = {"passed": "unbiased as far as seen", "known": "biased as declared", "rejected": "biased"}
     parts = [f"{counts[status]} {words.get(status, status)}" for status in STATUSES if counts[status]]
     scenes = f"{len(study.scenes)} scene{'' if len(study.scenes) == 1 else 's'}"

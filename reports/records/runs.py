@@ -16,7 +16,7 @@ from typing import Any, Literal, TypeVar, cast
 from fogproof.checks.json_values import jsonable
 from fogproof.checks.verdict import Verdict
 from fogproof.errors import InvalidInputError, shorten
-from fogproof.input_files import read_text
+from fogproof.input_files import parse_json, read_text
 from fogproof.oracle_error import OracleError
 from fogproof.plan import Plan
 from fogproof.reports.charts.findings import parse_figure
@@ -148,7 +148,7 @@ def load_record(folder: str | Path) -> dict[str, Any]:
         raise InvalidInputError(f"cannot read {path}: {there} {RESULTS}; {make} make one", str(path))
     text = read_text(path, "the record")
     try:
-        record = json.loads(text)
+        record = parse_json(text)
     except (ValueError, RecursionError) as error:
         ends = isinstance(error, json.JSONDecodeError) and error.pos >= len(text.rstrip())
         reason = "it ends in the middle of a record" if ends else f"it is not JSON ({error})"
@@ -176,13 +176,14 @@ def _lines(record: dict[str, Any]) -> str:
 
 
 def write_csv(run: RunRecord, folder: str | Path) -> Path:
-    """Write `folder/results.csv`, one row a case, and return its path.
+    """Write `folder/results.csv`, one row a case, and return its path; of a case that was asked for and is missing the row says so.
 
     No text in it can be taken for a formula, see `spreadsheet_cell`.
     """
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\r\n")
     rows = [_row(case, run) for case in run.cases]
+    rows += [dict.fromkeys(COLUMNS) | {"name": name, "status": "not run"} for name in run.missing]
     writer.writerow(COLUMNS)
     writer.writerows(map(spreadsheet_cell, row.values()) for row in rows)
     return write_file(Path(folder) / "results.csv", out.getvalue())

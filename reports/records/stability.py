@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
 from fogproof.errors import InvalidInputError
-from fogproof.input_files import read_text
+from fogproof.input_files import parse_json, read_text
 from fogproof.reports.records.runs import validated
 from fogproof.stability.measuring import OURS, FormError
 from fogproof.stability.record import SCHEMA, hidden
@@ -89,7 +88,7 @@ def stability_beside(folder: Path) -> StabilityRecord | None:
     if not path.exists():
         return None
     try:
-        record = json.loads(read_text(path, "the record"))
-    except ValueError as error:
+        record = parse_json(read_text(path, "the record"))
+    except (ValueError, RecursionError) as error:
         raise InvalidInputError(f"cannot read {path}: it is not JSON ({error})", str(path)) from None
     return parse_stability(record, str(path))

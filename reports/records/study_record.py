@@ -122,7 +122,7 @@ class StudyEntry:
     options: dict[str, Any] = field(default_factory=dict)
     bias: EstimateRecord | None = None
     variance: Variance | None = None
-    wants: float = 1.0
+    times_as_many: float = 1.0
     order: OrderRecord | None = None
     floor: FloorRecord | None = None
     cost: float | None = None
@@ -137,7 +137,7 @@ class Answer:
     best_unbiased: str | None
     text: str
     ranking: tuple[str, ...] = ()
-    out: tuple[str, ...] = ()
+    unranked: tuple[str, ...] = ()
     question: str = ""
     scene: str = ""
 
@@ -217,7 +217,7 @@ class StudyRecord:
     answers: tuple[Answer, ...] = ()
     failures: tuple[dict[str, Any], ...] = ()
     sessions: tuple[dict[str, Any], ...] = ()
-    mixed: bool = False
+    mixed_environments: bool = False
     advice: str = ""
     history: History | None = None
     state: Literal["finished", "interrupted"] = "finished"

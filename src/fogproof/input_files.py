@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import os
 import stat
 from io import BufferedReader
 from pathlib import Path
+from typing import Any
 
 from fogproof.errors import InvalidInputError
 
@@ -47,6 +49,19 @@ def read_requests(path: str | Path) -> bytes:
 def size_of(file: BufferedReader) -> int:
     """Return the size of an open file [bytes]."""
     return os.fstat(file.fileno()).st_size
+
+
+def parse_json(text: str) -> Any:
+    """Return the value of a JSON text; a ValueError (or RecursionError) where it is none, or has a key twice in one table."""
+    return json.loads(text, object_pairs_hook=_unique)
+
+
+def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    table = dict(pairs)
+    if len(table) < len(pairs):
+        keys = [key for key, _ in pairs]
+        raise ValueError(f"the key {next(key for key in keys if keys.count(key) > 1)!r} stands twice in one table")
+    return table
 
 
 def read_text(path: str | Path, what: str) -> str:

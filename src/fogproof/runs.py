@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import datetime
+import functools
 import importlib.metadata
-import inspect
 import shlex
 import sys
 import time
@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from fogproof.checks import Verdict, fresh_seed
+from fogproof.checks.arguments import shared_among
 from fogproof.checks.json_values import jsonable
 from fogproof.checks.streams import batch_generator
 from fogproof.errors import InvalidValueError
@@ -52,14 +53,12 @@ class Run:
         place = len(self._cases) + 1
         if "alpha" in options:
             raise InvalidValueError("alpha", "must be given to Run(alpha=...), whose checks share it", options["alpha"])
-        parameters = inspect.signature(check).parameters.values()
-        anything = any(p.kind is p.VAR_KEYWORD for p in parameters)
-        taken = {p.name for p in parameters}
         shared = {
             "alpha": self.alpha / (place * (place + 1)),
             "seed": int(batch_generator(self.seed, name, 0, 0).integers(2**62)),
         }
-        options = {key: value for key, value in shared.items() if anything or key in taken} | options
+        options = shared_among(check, shared) | options
+        title = _name_of(check)
         clock = time.perf_counter()
         try:
             verdict = check(*arguments, **options)
@@ -69,10 +68,10 @@ class Run:
                 )
         except Exception as error:
             reason = f"{type(error).__name__}: {error}"
-            self._cases[name] = case_record(name, None, title=check.__name__, status="error", reason=reason)
+            self._cases[name] = case_record(name, None, title=title, status="error", reason=reason)
             raise
         seconds = time.perf_counter() - clock
-        self._cases[name] = case_record(name, verdict.to_dict(), title=check.__name__, seconds=seconds)
+        self._cases[name] = case_record(name, verdict.to_dict(), title=title, seconds=seconds)
         return verdict
 
     def add(self, name: str, verdict: Verdict) -> None:
@@ -104,6 +103,13 @@ class Run:
 
         prepare_folder(Path(folder))
         return write_report(self.record(), folder)
+
+
+def _name_of(check: Callable[..., Verdict]) -> str:
+    """Return the name of a check, also of one whose arguments are given in part, or that is an object."""
+    while isinstance(check, functools.partial):
+        check = check.func
+    return getattr(check, "__name__", type(check).__name__)
 
 
 def case_record(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numbers
 from typing import Any
 
 import numpy as np
@@ -11,16 +12,26 @@ from fogproof.errors import InvalidValueError, shorten
 Channels = float | tuple[float, ...]
 """A grey value, or one value a colour or wavelength channel."""
 
+LONGEST = 1e6
+"""The longest time limit [s]: systems wait so long for sure, and eleven days are as good as none."""
+
 
 def as_float_array(name: str, value: Any) -> np.ndarray:
     """Return `value` as a new float64 array without negative zeros, or say what cannot be read as numbers."""
     try:
         array = np.asarray(value)
+        if array.dtype.kind == "O" and all(_is_number(one) for one in array.flat):  # fractions, decimals, mpmath's
+            array = array.astype(np.float64)
         if array.dtype.kind not in "iuf":
             raise TypeError(array.dtype)
         return np.asarray(array.astype(np.float64) + 0.0)  # -0.0 + 0.0 = 0.0: its sign must not choose a branch
     except (TypeError, ValueError, OverflowError):
-        raise InvalidValueError(name, "must be a number or an array of numbers", value) from None
+        fix = "give real and imaginary parts as two channels" if np.iscomplexobj(value) else ""
+        raise InvalidValueError(name, "must be a number or an array of numbers", value, fix) from None
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, numbers.Number) and not isinstance(value, bool | complex)
 
 
 def first_bad(array: np.ndarray, good: np.ndarray) -> Any:
@@ -124,6 +135,12 @@ def one_direction(name: str, value: object) -> tuple[float, float, float]:
     if vector.ndim != 1:
         raise InvalidValueError(name, "must be one vector [x, y, z]", value)
     return tuple(vector.tolist())
+
+
+def time_limit(name: str, value: Any) -> float:
+    """Return a time limit in (0, `LONGEST`] [s]."""
+    rule = f"must be > 0 and at most {LONGEST:g} [s]"
+    return number(name, value, rule, np.nextafter(0, 1), LONGEST)
 
 
 def positive_length(name: str, value: Any) -> float:

@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 import secrets
 from collections.abc import Generator, Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -53,6 +54,15 @@ def pytest_configure(config: pytest.Config) -> None:
     told = getattr(config, "workerinput", {}).get("fogproof_seed")
     config.stash[_SEED] = told if told is not None else secrets.randbits(62) if seed is None else seed
     config.stash[_ALPHA] = alpha
+    folder = config.getoption("--fogproof-report")
+    if folder and not hasattr(config, "workerinput"):  # better learnt now than when all tests have run
+        from fogproof.errors import InvalidInputError
+        from fogproof.reports.files import prepare_folder
+
+        try:
+            prepare_folder(Path(folder))
+        except InvalidInputError as error:
+            raise pytest.UsageError(f"--fogproof-report: {error}") from None
 
 
 @pytest.hookimpl(optionalhook=True)

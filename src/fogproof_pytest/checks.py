@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import hashlib
-import inspect
 import itertools
 from collections.abc import Callable
 from typing import Any
 
 import fogproof
 from fogproof.checks import InconclusiveError, RejectedError, Verdict
+from fogproof.checks.arguments import shared_among
 from fogproof.errors import InvalidValueError
 
 
@@ -32,29 +32,38 @@ class Checks:
         thing = getattr(fogproof, name)
         return self._checking(name, thing) if name.startswith("check_") or name == "compare_estimators" else thing
 
-    def _checking(self, name: str, check: Callable[..., Verdict]) -> Callable[..., Verdict]:
-        takes = inspect.signature(check).parameters
-
-        def checked(*arguments: Any, **options: Any) -> Verdict:
+    def _checking(self, name: str, check: Callable[..., Any]) -> Callable[..., Any]:
+        def checked(*arguments: Any, **options: Any) -> Any:
             __tracebackhide__ = True
             number = next(self._count)
             if "alpha" in options:
                 fix = "give the test a weight instead: @pytest.mark.fogproof(weight=...)"
                 raise InvalidValueError("alpha", "is shared out by the session", options["alpha"], fix)
+            takes = shared_among(check, {"alpha": 0.0, "seed": 0})
             if "alpha" in takes:
                 options["alpha"] = self._alpha(number)
             if "seed" in takes:
                 options.setdefault("seed", self._seed_of(number))
-            verdict = check(*arguments, **options)
-            self._verdicts.append({"check": name, **verdict.to_dict()})
-            if verdict.outcome == "rejected":
-                raise RejectedError(str(verdict))
-            if verdict.outcome == "inconclusive" and not self._passes:
-                ways = "give it what would decide, or mark the test @pytest.mark.fogproof(inconclusive='pass')"
-                raise InconclusiveError(f"{verdict}\n  an inconclusive verdict is no pass: {ways}")
-            return verdict
+            found = check(*arguments, **options)
+            if isinstance(found, Verdict):
+                self._verdicts.append({"check": name, **found.to_dict()})
+                self._raise(found)
+                return found
+            self._verdicts += [{"check": f"{name} of {one.name}", **one.verdict.to_dict()} for one in found]
+            for relation in sorted(found, key=lambda one: one.verdict.outcome != "rejected"):
+                self._raise(relation.verdict, f"{relation}\n")
+            return found
 
         return checked
+
+    def _raise(self, verdict: Verdict, about: str = "") -> None:
+        """Raise for a verdict that fails the test; `about` says first what it is about."""
+        __tracebackhide__ = True
+        if verdict.outcome == "rejected":
+            raise RejectedError(f"{about}{verdict}")
+        if verdict.outcome == "inconclusive" and not self._passes:
+            ways = "give it what would decide, or mark the test @pytest.mark.fogproof(inconclusive='pass')"
+            raise InconclusiveError(f"{about}{verdict}\n  an inconclusive verdict is no pass: {ways}")
 
     def _alpha(self, number: int) -> float:
         if self._calls is None:

@@ -60,7 +60,7 @@ def skewed(rng, n):
 
 SKEWED_VARIANCE = 1e4 * (1 + 0.2**2 / 12) - 1
 
-LAWLESS = [
+DISTRIBUTION_FREE = [
     ("exact variance", skewed, ref(1.0), {"variance": SKEWED_VARIANCE}, "not rejected", "Catoni"),
     ("exact variance, wrong mean", skewed, ref(9.0), {"variance": SKEWED_VARIANCE}, "rejected", "betting"),
     ("far too large", lambda rng, n: 1000 * skewed(rng, n), ref(1.0), {"nonnegative": True}, "rejected", "betting"),
@@ -69,7 +69,9 @@ LAWLESS = [
 
 
 @pytest.mark.parametrize(
-    ("name", "draw", "reference", "options", "outcome", "words"), LAWLESS, ids=[c[0] for c in LAWLESS]
+    ("name", "draw", "reference", "options", "outcome", "words"),
+    DISTRIBUTION_FREE,
+    ids=[c[0] for c in DISTRIBUTION_FREE],
 )
 def test_where_no_normal_law_holds_another_test_does_or_none(name, draw, reference, options, outcome, words):
     verdict = check_estimator(draw, reference, alpha=1e-9, samples=N, **options)

@@ -6,7 +6,7 @@ import time
 import numpy as np
 import pytest
 
-from fogproof import Interval, check_sampler
+from fogproof import Draw, Interval, check_sampler
 from fogproof.checks import check_reciprocity
 from fogproof.checks.limits import within
 from fogproof.errors import SubjectError
@@ -63,3 +63,14 @@ FUNCTIONS = [
 def test_reciprocity_and_rotation(name, f, options, rejecting):
     verdict = check_reciprocity(f, samples=2000, **options)
     assert {g.check for g in verdict.findings if g.outcome == "rejected"} == rejecting, str(verdict)
+
+
+def test_what_decides_about_weights_is_something_that_a_sampler_can_declare():
+    verdict = check_sampler(
+        lambda u: Draw(u[:, 0], weight=np.full(len(u), 0.6)),
+        lambda x: np.ones(len(x)), Interval(0, 1), dimensions=1, albedo=0.61, samples=1000,
+    )  # fmt: skip
+    assert verdict.outcome == "inconclusive"
+    (said,) = [f.message for f in verdict.findings if f.outcome == "inconclusive"]
+    assert "eval" in said
+    assert "variance" not in said

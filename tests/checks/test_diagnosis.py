@@ -5,10 +5,11 @@ import random
 import numpy as np
 import pytest
 
-from fogproof import HalfLine, Interval, UnitSphere, UnitSquare, check_sampler
+from fogproof import Box, HalfLine, Interval, SphericalTriangle, UnitSphere, UnitSquare, check_sampler
 from fogproof.checks.diagnosis import holes
 from fogproof.checks.diagnosis.diagnose import _setting
 from fogproof.checks.diagnosis.factors import named_factor
+from fogproof.checks.diagnosis.hypothesis import Hypothesis
 from fogproof.checks.subject import Subject
 from fogproof.zoo import select
 from fogproof.zoo.laws import directions, even, hg
@@ -126,3 +127,86 @@ def test_the_claim_is_asked_once_at_the_points_that_every_hypothesis_weighs():
     assert setting.p(whole) is first
     assert asked == [len(whole)]
     assert np.array_equal(setting.p(whole[:5]), first[:5])
+
+
+def twisted(u):
+    """Three coordinates of which each two are independent, and all three are not."""
+    return np.stack([u[:, 0], u[:, 1], (u[:, 0] + u[:, 1] + 0.1 * u[:, 2]) % 1], axis=1)
+
+
+@pytest.mark.parametrize(("sample", "factor", "cause"), [
+    (twisted, 1.0, "shape"),
+    (lambda u: u, 1.3, "normalisation"),
+])  # fmt: skip
+def test_an_integral_is_the_cause_only_if_points_of_the_known_law_show_it(sample, factor, cause):
+    cube = Box([0] * 3, [1] * 3)
+    verdict = check_sampler(sample, lambda x: np.full(len(x), factor), cube, dimensions=3, samples=20_000)
+    assert verdict.cause == cause, str(verdict)
+
+
+def test_a_narrow_lobe_is_no_atom():
+    def sample(rng, n):
+        return np.where(rng.random(n) < 2e-3, 0.37 + 1e-7 * rng.random(n), rng.random(n))
+
+    ones = lambda x: np.ones(len(x))  # noqa: E731
+    lobe = check_sampler(sample, ones, Interval(0, 1), dimensions=None, samples=N)
+    assert (lobe.outcome, lobe.cause) == ("rejected", "shape"), str(lobe)
+    atom = check_sampler(
+        lambda rng, n: np.where(rng.random(n) < 2e-3, 0.37, rng.random(n)),
+        ones,
+        Interval(0, 1),
+        dimensions=None,
+        samples=N,
+    )
+    assert atom.cause == "atom", str(atom)
+
+
+@pytest.mark.parametrize(("value", "error", "cause"), [
+    (-1.003, 0.01, "missing Jacobian"),
+    (0.5, 1e-4, "missing Jacobian"),
+    (0.0413, 0.005, "wrong power"),
+    (0.66, 0.005, "wrong power"),
+    (1.1, 0.3, "wrong power"),
+])  # fmt: skip
+def test_nobody_forgets_a_factor_to_an_odd_power(value, error, cause):
+    power = Hypothesis("missing Jacobian", "", lambda s, a: s.p, (1.0,), otherwise="wrong power")
+    assert power.caused(value, error) == cause
+
+
+def test_points_of_a_plane_are_told_from_those_of_a_cube():
+    corners = np.eye(3)
+    triangle = SphericalTriangle(*map(tuple, corners))
+
+    def sample(u):
+        s = np.sqrt(u[:, 0])
+        x = np.stack([1 - s, s * (1 - u[:, 1]), s * u[:, 1]], axis=1) @ corners
+        return x / np.linalg.norm(x, axis=1, keepdims=True)
+
+    verdict = check_sampler(sample, lambda x: np.full(len(x), 2 / np.pi), triangle, dimensions=2, samples=100_000)
+    assert verdict.cause == "missing Jacobian", str(verdict)
+    assert "area of a plane" in verdict.diagnosis
+
+
+def test_a_logarithm_and_what_is_no_number_are_named():
+    def checked(pdf):
+        return check_sampler(lambda u: np.sqrt(u[:, 0]), pdf, Interval(0, 1), dimensions=1, samples=20_000)
+
+    logarithm = checked(lambda x: np.log(2 * x))
+    assert logarithm.cause == "negative pdf"
+    assert "logarithm" in logarithm.diagnosis
+    assert "logarithm" not in checked(lambda x: 2 * x - 0.1).diagnosis
+    assert checked(lambda x: np.where(x < 0.1, np.nan, 2 * x)).cause == "not a number"
+
+
+def test_a_wrong_mean_cosine_is_no_wrong_shape():
+    verdict = check_sampler(*hg(0.5), UnitSphere(), dimensions=2, samples=20_000, axis=(0, 0, 1), mean_cosine=0.6)
+    assert verdict.cause == "wrong mean cosine", str(verdict)
+
+
+def test_the_line_that_reproduces_a_verdict_needs_no_numpy():
+    mirror = tuple(np.array([0.6, 0.0, 0.8]))
+    verdict = check_sampler(
+        lambda u: np.where(u[:, :1] < 0.5, mirror, directions(2 * u[:, 0] - 1, u[:, 1])),
+        lambda x: 0.5 * even(x), UnitSphere(), dimensions=2, atoms={mirror: 0.5}, samples=1000,
+    )  # fmt: skip
+    assert "atoms={(0.6, 0.0, 0.8): 0.5}" in verdict.reproduce

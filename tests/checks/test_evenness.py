@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fogproof import Interval, UnitSphere, UnitSquare, check_sampler
+from fogproof import HalfLine, Interval, UnitSphere, UnitSquare, check_sampler
 from fogproof.checks.statistics.evenness import evenness_test
 
 CALLS = {"dimensions": None, "samples": 1 << 17}
@@ -52,6 +52,32 @@ def test_stratified_calls_are_named_unless_they_are_declared(name):
     verdict = check_sampler(sample, pdf, domain, **CALLS)
     assert verdict.cause == "stratified samples", str(verdict)
     assert "quasi_random=True" in str(verdict)
+    assert check_sampler(sample, pdf, domain, quasi_random=True, **CALLS).outcome == "not rejected"
+
+
+def antithetic(rng, n):
+    x = rng.random(n - n // 2)
+    return rng.permutation(np.concatenate([x, 1 - x])[:n])
+
+
+def opposite(rng, n):
+    x = rng.random(n - n // 2)
+    return rng.permutation(np.concatenate([x, (x + 0.5) % 1])[:n])
+
+
+@pytest.mark.parametrize(("sample", "pdf", "domain"), [
+    (antithetic, ones, Interval(0, 1)),
+    (opposite, ones, Interval(0, 1)),
+    (lambda rng, n: -np.log1p(-antithetic(rng, n)), lambda x: np.exp(-x), HalfLine(0)),
+    (lambda rng, n: on_sphere(np.stack([rng.random(n), opposite(rng, n)], axis=1)), lambda x: ones(x) / (4 * np.pi),
+     UnitSphere()),
+    (lambda rng, n: 0.5 * np.sqrt(antithetic(rng, n)), lambda x: np.where(x < 0.5, 8 * x, 0.0), Interval(0, 1)),
+    (lambda rng, n: np.where(rng.random(n) < 0.9, antithetic(rng, n), rng.random(n)), ones, Interval(0, 1)),
+])  # fmt: skip
+def test_partners_are_found_wherever_in_a_call_they_stand(sample, pdf, domain):
+    verdict = check_sampler(sample, pdf, domain, **{**CALLS, "samples": 1 << 19})
+    assert verdict.outcome == "rejected", str(verdict)
+    assert verdict.cause == "correlation", str(verdict)
     assert check_sampler(sample, pdf, domain, quasi_random=True, **CALLS).outcome == "not rejected"
 
 

@@ -130,6 +130,12 @@ def test_what_is_no_family_is_explained(make, parameters, word):
         fogproof.check_family(make, parameters, samples=1000)
 
 
+def test_a_wrong_option_is_no_fault_of_a_member():
+    for options in ({"bounds": (1.0, 0.0)}, {"tails": "thin"}, {"tolerance": -1.0}):
+        with pytest.raises(fogproof.InvalidValueError, match=next(iter(options))):
+            fogproof.check_family(Mean, [0.5, 0.3], samples=10_000, **options)
+
+
 def test_no_decision_says_what_decides():
     class Heavy:
         reference = float(np.exp(4.5))

@@ -188,3 +188,27 @@ def test_a_support_takes_the_place_of_the_domain():
 def test_bad_hints_are_explained(hint, words):
     with pytest.raises(InvalidValueError, match=words):
         check(**hint)
+
+
+@pytest.mark.parametrize("first", [0.0, -np.pi])
+def test_azimuths_may_be_counted_from_anywhere(first):
+    """A map of sectors: what jumps between pi and 2 pi jumps between -pi and 0."""
+    shares = np.random.default_rng(8).random(48) + 0.05
+    shares[40] = 9.0
+    shares /= shares.sum()
+    sums = np.concatenate([[0.0], np.cumsum(shares)])
+    edges = np.linspace(0, 2 * np.pi, 49)
+
+    def sample(u):
+        mu, phi = 2 * u[:, 0] - 1, np.interp(u[:, 1], sums, edges)
+        s = np.sqrt(1 - mu * mu)
+        return np.stack([s * np.cos(phi), s * np.sin(phi), mu], axis=1)
+
+    def pdf(x):
+        sector = np.minimum((np.arctan2(x[:, 1], x[:, 0]) % (2 * np.pi) / (2 * np.pi) * 48).astype(int), 47)
+        return shares[sector] * 48 / (4 * np.pi)
+
+    breaks = {"phi": edges + first}
+    verdict = check_sampler(sample, pdf, UnitSphere(), dimensions=2, samples=50_000, breaks=breaks)
+    assert verdict.outcome == "not rejected", str(verdict)
+    assert not verdict.unchecked, verdict.unchecked

@@ -93,11 +93,19 @@ def antithetic(i):
     return lambda n: u[:n] if i % 2 else 1 - u[:n]
 
 
+def few_bits(rng, bits):
+    """Return a stream of numbers that are cut to so many bits."""
+    return lambda n: np.floor(rng.random(n) * 2.0**bits) / 2.0**bits
+
+
 STREAMS = [
     ("spawned", lambda i: np.random.default_rng(np.random.SeedSequence(9, spawn_key=(i,))), ""),
     ("jumped", lambda i: np.random.Generator(np.random.PCG64(9).jumped(i)), ""),
     ("single precision", lambda i: lambda n: np.random.default_rng([1, i]).random(n, dtype=np.float32), ""),
     ("neighbouring seeds of a linear congruence", Congruential, "correlation"),
+    ("eight bits", lambda i: few_bits(np.random.default_rng([3, i]), 8), ""),
+    ("half precision", lambda i: few_bits(np.random.default_rng([4, i]), 11), ""),
+    ("eight bits, overlapping", lambda i: few_bits(overlapping(i), 8), "dependent samples"),
     ("overlapping", overlapping, "dependent samples"),
     ("the same twice", lambda i: np.random.default_rng(i // 2), "dependent samples"),
     ("one generator for all", hidden_state(), "dependent samples"),

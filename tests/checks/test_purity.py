@@ -284,3 +284,17 @@ def test_a_pdf_with_a_state_of_its_own_is_found():
     noisy = lambda x: 1 + 0.1 * rng.normal(size=len(x))  # noqa: E731
     verdict = check_sampler(lambda u: u[:, 0], noisy, Interval(0, 1), dimensions=1, samples=20_000)
     assert "function of its point" in [f.check for f in verdict.findings if f.outcome == "rejected"]
+
+
+def test_a_pdf_that_writes_into_its_points_is_named():
+    def pdf(x):
+        x *= 2
+        return x
+
+    verdict = check_sampler(lambda u: np.sqrt(u[:, 0]), pdf, UNIT, dimensions=1, samples=2000)
+    assert (verdict.outcome, verdict.cause) == ("rejected", "writes into its points"), str(verdict)
+
+
+def test_numbers_that_round_alike_do_not_ignore_their_uniforms():
+    verdict = check_sampler(lambda u: u[:, 0] + 1e15, ones, Interval(1e15, 1e15 + 1), dimensions=1, samples=2000)
+    assert verdict.outcome == "inconclusive", str(verdict)

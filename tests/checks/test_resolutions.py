@@ -123,13 +123,13 @@ def test_of_a_missing_band():
 
 def test_of_a_missing_tail():
     marginal, n, rng = line(256), 20_000, np.random.default_rng()
-    size = scan_ends("", marginal, np.full(256, n // 256), 1e-5, 1 - 1e-5, ALPHA).resolution.value
+    size = scan_ends("", marginal, np.full(256, n // 256), 1e-5, 1 - 1e-5, 0.0, ALPHA).resolution.value
     for part, most in ((1.0, 1.0), (0.3, 0.5)):
         caught = []
         for _ in range(100):
             x = part * size + (1 - part * size) * rng.random(n)
             counts = np.bincount((x * 256).astype(int), minlength=256)
-            caught.append(scan_ends("", marginal, counts, x.min(), x.max(), ALPHA).outcome == "rejected")
+            caught.append(scan_ends("", marginal, counts, x.min(), x.max(), 0.0, ALPHA).outcome == "rejected")
         as_often(caught, most)
 
 

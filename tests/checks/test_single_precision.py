@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fogproof import UnitSphere, check_sampler
+from fogproof import Interval, UnitSphere, check_sampler
 
 TENTH = 2 * np.sin(np.radians(0.1) / 2) ** 2
 SINGLE = {"dimensions": 2, "precision": "float32", "samples": 300_000}
@@ -100,3 +100,12 @@ def test_what_rounding_hides_is_no_pass():
     pdf = lambda x: np.where(versine(x) < 8e-8, 1 / (2 * np.pi * 8e-8), 0)  # noqa: E731
     verdict = check_sampler(always_single(coarse), pdf, UnitSphere(), **SINGLE)
     assert verdict.outcome != "not rejected", str(verdict)
+
+
+def test_numbers_of_few_bits_may_be_0():
+    """Among 2^18 numbers of 16 bits some are 0 itself, below which nothing lies."""
+    verdict = check_sampler(
+        lambda rng, n: rng.integers(0, 1 << 16, n) / 2**16,
+        lambda x: np.ones(len(x)), Interval(0, 1), dimensions=None, uniform_bits=16, samples=1 << 18,
+    )  # fmt: skip
+    assert verdict.outcome == "not rejected", str(verdict)

@@ -144,7 +144,7 @@ def test_bad_requests_are_answered_with_code_message_and_path(change, message, p
 
 BAD_CALLS = [
     (["verify", "luck"], "no case is called 'luck'"),
-    (["verify", "--alpha", "2"], "--alpha must lie in"),
+    (["verify", "--alpha", "2"], "'--alpha': must be a number in [1e-90, 1), got 2"),
     (["verify", "--seed", "-1"], "Invalid value for '--seed'"),
     (["verify", "fog/analog/haze", "--report", "/proc/nowhere"], "cannot write /proc/nowhere"),
     (["plan", "nowhere.toml"], "cannot read the scene file nowhere.toml"),

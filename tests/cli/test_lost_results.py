@@ -141,3 +141,27 @@ def test_an_outcome_that_there_is_not_is_named(tmp_path):
     assert b"cases.0.verdict.outcome must be " in end.err
     assert b"splendid" in end.err
     assert not (tmp_path / "index.html").exists()
+
+
+@pytest.mark.parametrize("words", [["report", "run"], ["report", "good", "--against", "run"]])
+def test_a_record_changed_by_hand_is_named(tmp_path, monkeypatch, words):
+    monkeypatch.chdir(tmp_path)
+    for name in ("good", "run"):
+        Path(name).mkdir()
+        Path(name, "results.json").write_text(json.dumps(record()))
+    text = Path("run/results.json").read_text()
+    Path("run/results.json").write_text('{"schema": "mine", ' + text[1:])
+    end = ends(*words)
+    assert (end.code, b"run/results.json" in end.err, b"'schema' stands twice" in end.err) == (2, True, True)
+
+
+def test_a_record_of_which_no_page_can_be_made_is_named(tmp_path, monkeypatch):
+    import fogproof.reports
+
+    def falls(*_, **__):
+        return {}["done"]
+
+    (tmp_path / "results.json").write_text(json.dumps(record()))
+    monkeypatch.setattr(fogproof.reports, "write_report", falls)
+    end = ends("report", tmp_path)
+    assert (end.code, b"results.json, as if changed by hand: KeyError: 'done'" in end.err) == (2, True)

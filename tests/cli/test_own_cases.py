@@ -1,15 +1,21 @@
 """One's own file of cases in a run: its faults are sentences, its subjects cannot cost another's result, alpha is shared."""
 
 import json
+import multiprocessing
 import textwrap
+import time
+from functools import partial
 
 import pytest
 from click.testing import CliRunner
 
 from fogproof import verify
 from fogproof.catalogue import SamplerCase, all_cases, own
+from fogproof.checks.limits import within
+from fogproof.checks.streams import batch_generator
 from fogproof.cli.commands import cli
 from fogproof.errors import FogproofError, InvalidInputError
+from fogproof.verify import Result, running
 
 HEAD = """
     import os, time
@@ -168,3 +174,40 @@ def test_a_generator_of_cases_may_be_endless_only_until_it_is_looked_at(tmp_path
     path = written(tmp_path, "def cases():\n    while True:\n        yield 1\n", "endless.py")
     with pytest.raises(InvalidInputError, match="cases\\(\\) must return SamplerCase"):
         own.own_cases(path)
+
+
+def test_a_run_that_is_given_up_ends_what_was_about_to_start(monkeypatch):
+    def late(case, seed, share, twins):
+        if case.name == first.name:
+            return Result(case, "skipped", None, "", 0.0)
+        time.sleep(0.3)  # as long as a server of processes may take
+        return within(60, partial(time.sleep, 60))
+
+    first, *others = list(all_cases())[:4]
+    monkeypatch.setattr(running, "run_case", late)
+    started = time.monotonic()
+    results = running.run([first, *others], seed=1, alpha=1e-6, workers=2)
+    assert next(results).case is first
+    results.close()
+    assert time.monotonic() - started < 20
+
+
+def test_no_process_to_be_had_is_the_system_s_fault_not_the_subject_s(monkeypatch):
+    class Exhausted:
+        Pipe = staticmethod(multiprocessing.Pipe)
+
+        class Process:
+            def __init__(self, **_):
+                pass
+
+            def start(self):
+                raise EOFError
+
+    monkeypatch.setattr(multiprocessing, "get_context", lambda name: Exhausted)
+    with pytest.raises(OSError, match=r"no process could be started; end some"):
+        within(1, int)
+
+
+def test_a_file_may_have_any_name_that_a_system_allows():
+    draws = [batch_generator(1, name, 0, 0).random() for name in ("a\udcffb/m", "a\udcfeb/m", "\ud800")]
+    assert len(set(draws)) == 3

@@ -1,19 +1,27 @@
 """Whatever a stopped command writes says that it is unfinished, in the same words."""
 
+import csv
 import json
 import os
 import shlex
 import sys
 
+import numpy as np
 import pytest
+from report_records import typical
 
 from fogproof.bench.record import page as bench_page
 from fogproof.bench.record import run_record
+from fogproof.checks.json_values import jsonable
 from fogproof.cli import main
+from fogproof.contracts import Reference
 from fogproof.reports.gallery import pictures
 from fogproof.reports.pages.stability import headline
+from fogproof.reports.records.runs import parse_record, write_csv
 from fogproof.reports.records.stability import parse_stability
 from fogproof.stability.record import run_record as stability_record
+from fogproof.study.aggregate import Level
+from fogproof.study.judgement import _against_theory
 from fogproof.zoo.comparison import page as zoo_page
 
 SCENE = "scenes/images/sun.toml"
@@ -54,6 +62,32 @@ def test_a_zoo_that_ran_nothing_says_nothing_of_survivors():
     text = zoo_page([], 1000, 1e-6, {}, 79)
     assert text.startswith("# Unfinished: 0 of 79 bugs were run\n")
     assert "## What survived\n\nNothing yet. Unfinished: 0 of 79." in text
+
+
+def test_a_table_of_an_unfinished_run_names_what_was_not_run(tmp_path):
+    told = jsonable(typical(2))
+    path = write_csv(
+        parse_record({**told, "state": "interrupted", "asked": ["=late", told["cases"][0]["name"]]}), tmp_path
+    )
+    rows = list(csv.DictReader(path.read_text().splitlines()))
+    assert [row["status"] for row in rows] == [*(case["status"] for case in told["cases"]), "not run"]
+    assert (rows[-1]["name"], rows[-1]["outcome"]) == ("'=late", "")
+
+
+@pytest.mark.parametrize("replicates", [1, 2])
+def test_a_study_stopped_after_few_replicates_is_judged(replicates):
+    rng = np.random.default_rng(1)
+    x = rng.normal(size=(replicates, 100))
+    rows = np.array(
+        [
+            [100, row.mean(), *(np.sum((row - row.mean()) ** k) for k in (2, 3, 4)), row.min(), row.max(), 1, 1, 0]
+            for row in x
+        ]
+    )
+    exact = Reference(np.float64(1.0), np.float64(0.0), "", "")
+    level = Level(100, rows, 48, rows[0], np.zeros(0), float("nan"), np.zeros(0), float("nan"), replicates, 0.0)
+    checks = [finding.check for finding in _against_theory([level], exact, 1e-6)]
+    assert checks == ["variance", "scatter of replicates"][:replicates]
 
 
 def test_a_stopped_stability_run_is_unfinished():

@@ -14,7 +14,7 @@ import pytest
 
 import fogproof
 from fogproof import scene
-from fogproof.scene import lights, media, occluders, phase, shapes
+from fogproof.scene import cameras, grounds, lights, media, occluders, phase, shapes
 
 ROOT = Path(__file__).resolve().parents[2]
 SOURCES = [path for folder in ("analytic", "estimators", "reports") for path in sorted((ROOT / folder).rglob("*.py"))]
@@ -26,7 +26,7 @@ TWICE = {
     "Box": "the same, of a box",
 }
 WITH_SPACES = {"not rejected"}  # outcomes are read by people, in tables and sentences
-PRIVATE_WORDS = {"crew", "handful", "_told", "gathering", "matter"}  # what they meant has a name of its own
+PRIVATE_WORDS = {"crew", "handful", "_told", "gathering", "matter", "lawless"}  # what they meant has a name of its own
 LONGEST = 150
 
 
@@ -47,6 +47,19 @@ def classes():
 def test_no_class_name_stands_for_two_things():
     assert len(SOURCES) > 300
     assert {name for name, paths in classes().items() if len(paths) > 1} == set(TWICE)
+
+
+def test_no_alias_has_the_name_of_something_public():
+    """A type's short name in one module is not what users know by that name."""
+    for path, tree in trees().items():
+        if path.endswith("__init__.py"):
+            continue
+        for node in tree.body:
+            targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
+            for name in {target.id for target in targets if isinstance(target, ast.Name)} & set(fogproof.__all__):
+                module = path.removeprefix("src/").removesuffix(".py").replace("/", ".").removeprefix("fogproof.")
+                public = importlib.import_module(f"fogproof.{module}")
+                assert getattr(public, name) is getattr(fogproof, name), f"{path}: {name} is another thing in fogproof"
 
 
 def test_no_value_has_a_space_in_it():
@@ -81,7 +94,9 @@ def test_cases_are_data():
                     assert node.end_lineno - node.lineno <= LONGEST, f"{path}: {node.name}; make a second theme of it"
 
 
-@pytest.mark.parametrize("room", [lights, media, occluders, phase, shapes], ids=lambda room: room.__name__)
+@pytest.mark.parametrize(
+    "room", [cameras, grounds, lights, media, occluders, phase, shapes], ids=lambda room: room.__name__
+)
 def test_every_kind_is_public(room):
     for kind in room.KINDS.values():
         assert kind.__name__ in scene.__all__

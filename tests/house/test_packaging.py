@@ -16,6 +16,7 @@ HEAVY = ["numba", "scipy", "scipy.stats", "matplotlib", "pydantic", "colour", "c
 def test_every_package_folder_is_listed():
     homes = {
         "fogproof": "src/fogproof",
+        "fogproof_command": "src/fogproof_command",
         "fogproof_pytest": "src/fogproof_pytest",
         **{f"fogproof.{name}": name for name in ("analytic", "estimators", "reports")},
     }

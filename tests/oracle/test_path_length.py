@@ -118,6 +118,25 @@ def test_lengths_of_anisotropic_slabs_agree_with_finite_absorption():
     assert mean.error <= 1e-7
 
 
+def test_arguments_that_the_orders_lack_may_be_what_they_are_anyway():
+    for name, extra in (("half_space_reflectance", {}), ("slab_reflectance", {"tau": 1.0})):
+        arguments = {"albedo": 0.8, "count": 3, "mu0": 0.5, **extra}
+        usual = {"phase": None} if name == "half_space_reflectance" else {"refractive_index": np.asarray(1.0)}
+        plain = analytic.scattering_count_law(name, **arguments)
+        assert analytic.scattering_count_law(name, **arguments, **usual).value.tolist() == plain.value.tolist()
+    with pytest.raises(UnsupportedError, match="orders of half_space_reflectance are known without phase alone"):
+        analytic.scattering_count_law("half_space_reflectance", 0.8, 3, mu0=0.5, phase=HenyeyGreenstein(0.5))
+
+
+def test_no_rates_are_no_values_and_nothing_has_no_derivative():
+    for mu0, shape in ((0.5, (0,)), ([0.2, 0.5], (2, 0))):
+        none = analytic.path_length_transform("half_space_reflectance", [], albedo=0.9, mu0=mu0)
+        assert none.value.shape == none.error.shape == shape
+    for arguments in ({"mu0": []}, {"mu0": [0.5], "albedo": np.zeros((0, 1))}):
+        with pytest.raises(InvalidValueError, match=r"mu0 must stand with one value at least, got \[\]"):
+            analytic.gradient("half_space_reflectance", "mu0", **{"albedo": 0.9, **arguments})
+
+
 def test_what_has_no_mean_is_refused():
     with pytest.raises(UnsupportedError, match="infinite, or nothing bounds it"):
         analytic.path_length_mean("half_space_reflectance", albedo=1.0, mu0=0.5)

@@ -208,3 +208,8 @@ def test_more_values_than_are_enumerated_are_refused():
 def test_requests():
     found = answer({"quantity": "voxel_estimate_variance", **TWO, "estimate": "next-flight", "majorant": 3})
     assert found["value"] == float(voxel_estimate_variance(**TWO, estimate="next-flight", majorant=3.0).value)
+
+
+def test_moments_beyond_float64_are_refused():
+    with pytest.raises(UnsupportedError, match=r"a moment of the estimate 'next-flight' is beyond 1\.8e308"):
+        voxel_estimate_cost([0.5, 3], [1, 0.7], "next-flight", majorant=1e-160)

@@ -47,3 +47,17 @@ def test_examples_are_short():
     assert len((EXAMPLES / "cpp" / "fogproof.hpp").read_text().splitlines()) <= 150
     for name in CAUSE:
         assert len((EXAMPLES / "cpp" / f"{name}.cpp").read_text().splitlines()) <= 30
+
+
+def test_the_line_of_shell_runs():
+    if shutil.which("mawk") is None:
+        pytest.skip("no mawk on this machine")
+    page = (EXAMPLES.parents[1] / "docs" / "pipe.md").read_text()
+    command = next(block for block in page.split("```") if block.strip().startswith("mawk"))
+    spec = {
+        "dimensions": 1,
+        "medium": {"sigma_a": 1, "sigma_s": 0},
+        "ray": {"origin": [0, 0, 0], "direction": [0, 0, 1], "length": "inf"},
+    }
+    verdict = check_program(command.strip(), spec, Settings(samples=2000)).verdict
+    assert verdict.outcome == "not rejected", str(verdict)

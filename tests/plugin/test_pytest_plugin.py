@@ -106,6 +106,55 @@ def test_misuse_is_told(tmp_path, change, words):
     assert words in run(tmp_path, RIGHT.replace(*change)).stdout
 
 
+EVERY = """
+    import numpy as np
+    from fogproof import Medium, PointLight, Ray
+    from fogproof.relations import PathSetting
+    from fogproof.scene.shapes import Ball
+
+    def uniform(rng, n):
+        return rng.random(n)
+
+    def test_derivative(fogproof):
+        fogproof.check_gradient(uniform, 0.5, samples=5000)
+
+    def test_relations(fogproof):
+        def render(setting):
+            if setting.medium.channels or setting.only is not None:
+                raise fogproof.UnsupportedError("grey, all orders")
+            return lambda rng, n: setting.light.intensity * (1 + rng.random(n))
+
+        light = PointLight((0.0, 0.0, 4.0), 10.0)
+        setting = PathSetting(Medium(0.2, 0.8), Ball((0, 0, 0), 1.0), Ray((3, 0, 0), (-1, 0, 0)), light)
+        fogproof.check_relations(render, setting, samples=2000)
+"""
+
+
+def test_checks_that_pass_their_options_on_share_the_budget_and_the_seed(tmp_path):
+    out = run(tmp_path, EVERY, "--fogproof-seed=4", "--fogproof-report", str(tmp_path / "report"))
+    cases = json.loads((tmp_path / "report" / "results.json").read_text())["cases"]
+    derivative = next(case["verdict"] for case in cases if "test_derivative" in case["name"])
+    assert derivative["alpha"] == pytest.approx(1e-6 / 4)
+    assert derivative["seed"] == 3257402847398839113  # from the session's seed and the name of the test
+    relations = [case["verdict"] for case in cases if "test_relations" in case["name"]]
+    assert len(relations) > 3, out.stdout
+    assert sum(verdict["alpha"] for verdict in relations) <= 1e-6 / 4
+    assert "look at" in out.stdout  # this light does not spread as it goes
+
+
+def test_a_report_that_cannot_be_written_is_told_before_the_tests_run(tmp_path):
+    (tmp_path / "file").write_text("")
+    out = run(tmp_path, RIGHT, "--fogproof-report", str(tmp_path / "file" / "report"))
+    assert out.returncode == 4
+    assert "--fogproof-report: cannot write" in out.stderr
+    assert "Traceback" not in out.stderr
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "index.html").write_text("mine")
+    out = run(tmp_path, RIGHT, "--fogproof-report", str(tmp_path / "other"))
+    assert "choose another folder" in out.stderr
+    assert "--force" not in out.stderr  # pytest has no such option
+
+
 def test_wrong_options_are_told(tmp_path):
     assert "--fogproof-alpha must lie in (0, 1)" in run(tmp_path, RIGHT, "--fogproof-alpha", "2").stderr
     marked = RIGHT.replace("    def test", "    import pytest\n\n    @pytest.mark.fogproof(wieght=2)\n    def test")

@@ -105,8 +105,11 @@ def test_rows_stand_in_the_order_of_the_ranking_and_say_who_is_biased(page):
 @pytest.mark.parametrize(
     ("wanted", "words"),
     [
-        (with_entries(entry("a", status="rejected")), "1 of 1 estimators is biased"),
-        (with_entries(entry("a")), "The study is incomplete: 1 of 20 batches are missing"),
+        (
+            with_entries(entry("a", status="rejected")),
+            "Unfinished: 19 of 20 batches are drawn; 1 of 1 estimators is biased",
+        ),
+        (with_entries(entry("a")), "Unfinished: 19 of 20 batches are drawn"),
         (
             with_entries(entry("a"), batches={"planned": 3, "done": 3}, failures=[]),
             "Something came out worse than before",

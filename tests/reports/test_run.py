@@ -1,5 +1,7 @@
 """Checks collected in a run: every check that fogproof has may be among them, and they share one false-alarm probability."""
 
+import functools
+
 import numpy as np
 import pytest
 
@@ -28,6 +30,23 @@ def test_every_check_is_run_with_what_it_takes():
     for check, arguments, options in CHECKS:
         assert run.check(check.__name__, check, *arguments, **options).outcome == "not rejected"
     assert run.exit_code == 0
+
+
+class Own:
+    """A check that is an object."""
+
+    def __call__(self, alpha):
+        return fogproof.check_estimator(uniform, 0.5, samples=2000, alpha=alpha)
+
+
+def test_a_check_need_not_be_a_plain_function():
+    run = fogproof.Run(seed=3)
+    parts = functools.partial(fogproof.check_estimator, uniform, samples=2000)
+    first = run.check("arguments given in part", parts, 0.5)
+    second = run.check("an object", Own())
+    third = run.check("passed on", fogproof.check_gradient, uniform, 0.5, samples=2000)
+    assert [v.alpha for v in (first, second, third)] == [1e-6 / 2, 1e-6 / 6, 1e-6 / 12]
+    assert [case["title"] for case in run.record()["cases"]] == ["check_estimator", "Own", "check_gradient"]
 
 
 def test_what_a_run_cannot_share_or_keep_is_explained():

@@ -273,5 +273,5 @@ def test_an_estimator_that_always_fails_costs_the_others_nothing(tmp_path):
     assert failed["outcome"] == twin["outcome"] == "inconclusive"
     assert good["outcome"] == "not rejected"
     assert record["answers"][0]["best"] in ("airlight", "airlight + sobol", "marched-airlight")
-    assert "mis" in record["scenes"][0]["answer"]["out"]
+    assert "mis" in record["scenes"][0]["answer"]["unranked"]
     assert record["exit_code"] == 1

@@ -297,7 +297,7 @@ def test_a_wrong_estimator_is_not_called_unbiased(monkeypatch, tmp_path, what):
     if outcome == "rejected":
         assert "Rejected: the estimator" in answer["text"]
         assert record["exit_code"] == 1
-        assert (wrong["name"] in answer["out"]) == (what == "broken")  # what is no number has no error
+        assert (wrong["name"] in answer["unranked"]) == (what == "broken")  # what is no number has no error
     else:
         assert "infinite variance suspected" in wrong["warning"]
         assert "Not judged unbiased yet" in answer["text"]

@@ -13,6 +13,8 @@ from fogproof.bench.figure import TimeErrorPlane, drawable
 from fogproof.bench.measuring import WayTime, machine, table
 from fogproof.errors import InvalidInputError
 from fogproof.input_files import read_text
+from fogproof.journal import add_line, whole_lines
+from fogproof.reports.files import write_file
 from fogproof.reports.gallery.plots import render_plot
 from fogproof.text import state, unfinished
 
@@ -54,19 +56,15 @@ def run_record(
 
 def write_record(record: Mapping[str, Any], rows: list[WayTime], benchmarks: Iterable[Benchmark], folder: Path) -> Path:
     """Write bench.json, a line of bench.jsonl (the history), bench.md and figures; return the page's path."""
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "bench.json").write_text(json.dumps(record, indent=1) + "\n")
-    with (folder / "bench.jsonl").open("a") as history:
-        history.write(json.dumps(record) + "\n")
+    write_file(folder / "bench.json", json.dumps(record, indent=1) + "\n")
+    add_line(folder / "bench.jsonl", record)
     figures = folder / "figures"
     for benchmark in benchmarks:
         mine = tuple(row for row in rows if row.benchmark == benchmark.name)
         if drawable(mine):
             figures.mkdir(exist_ok=True)
             render_plot(TimeErrorPlane(benchmark.title, mine), f"speed-{benchmark.name}").save(figures)
-    path = folder / "bench.md"
-    path.write_text(page(record, rows))
-    return path
+    return write_file(folder / "bench.md", page(record, rows))
 
 
 def page(record: Mapping[str, Any], rows: list[WayTime]) -> str:
@@ -100,7 +98,7 @@ def history(folder: Path) -> list[dict[str, Any]]:
     if not path.exists():
         return []
     records: list[dict[str, Any]] = []
-    for number, line in enumerate(read_text(path, "the history").splitlines(), start=1):
+    for number, line in enumerate(whole_lines(read_text(path, "the history")), start=1):
         try:
             record = json.loads(line)
         except (ValueError, RecursionError):

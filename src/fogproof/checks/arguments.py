@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import inspect
 import math
 import operator
+from collections.abc import Callable
 from typing import Any
 
 from fogproof.checks.streams import fresh_seed
@@ -23,6 +25,14 @@ def alpha_of(alpha: Any) -> float:
     return value
 
 
+def shared_among(check: Callable[..., Any], options: dict[str, Any]) -> dict[str, Any]:
+    """Return those of the options that a check takes; one that passes its further options on takes all of them."""
+    parameters = inspect.signature(check).parameters.values()
+    named = {p.name for p in parameters}
+    passes_on = any(p.kind is p.VAR_KEYWORD for p in parameters)
+    return {name: value for name, value in options.items() if passes_on or name in named}
+
+
 def samples_of(samples: Any, least: int = 2) -> int:
     """Return a number of realisations; 1e6 is one."""
     return whole("samples", samples, least)
@@ -31,6 +41,8 @@ def samples_of(samples: Any, least: int = 2) -> int:
 def whole(name: str, value: Any, least: int) -> int:
     """Return a whole number, also if it is written as a float such as 1e6."""
     rule = f"must be a whole number >= {least}"
+    if type(value) is int and value < least:
+        raise InvalidValueError(name, rule, value)  # as it was given, not as a float
     x = number(name, value, rule, least)
     if x != math.floor(x):
         raise InvalidValueError(name, rule, x)

@@ -28,6 +28,7 @@ from fogproof.validate import number
 _BEST = 32  # places that are looked at more closely
 _ROUNDS = 40
 _SHRINK = 0.6  # of the neighbourhood, from one round to the next
+_NEAR = 1e-6  # above the bound by less is told as a difference
 _CORNERS = 10  # dimensions up to which all corners are visited
 
 
@@ -69,6 +70,8 @@ def check_bound(
     limit = 0.0 if callable(bound) else number("bound", bound, "must be >= 0", 0)
     slack = 16 * UNIT_ROUNDOFF[precision]
 
+    highest = limit
+
     def quotient(u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         x = law.place(u)
         with np.errstate(all="ignore"):
@@ -79,6 +82,8 @@ def check_bound(
                 else np.full(len(x), limit)
             )
             ratio = np.where(top > 0, value / top, np.where(value > top, np.inf, 0.0))
+        nonlocal highest
+        highest = max(highest, float(np.max(top, initial=0.0)))
         known = ~(np.isnan(value) | np.isnan(top) | np.isposinf(value))
         return np.where(known, ratio, np.inf), value, x
 
@@ -87,7 +92,8 @@ def check_bound(
     over = not best <= 1 + slack
     at = shorten(place)
     outcome: Outcome = "rejected" if over else "not rejected"
-    above = f"f = {value:.9g} is {best:.9g} times its bound at {at}" if over else f"f <= bound at {used} points"
+    size = f"is {best:.9g} times its bound" if best > 1 + _NEAR else f"is above its bound, by {best - 1:.2g} of that,"
+    above = f"f = {value:.9g} {size} at {at}" if over else f"f <= bound at {used} points"
     part = "part of the domain where f exceeds its bound"
     resolution = None if over else Resolution(part, -math.expm1(math.log(MISS) / independent), MISS)
     cause = "wrong bound" if over else ""
@@ -95,8 +101,10 @@ def check_bound(
         Finding("above everywhere", outcome, above, effect=best - 1, resolution=resolution, cause=cause),
     ]
     if not over:
-        near = best >= attained
-        message = f"f reaches {best:.4g} of its bound, at {at}"
+        near = best >= attained or highest == 0  # where both are zero, the bound is as tight as can be
+        message = (
+            f"f reaches {best:.4g} of its bound, at {at}" if highest else f"f and its bound are 0 at {used} points"
+        )
         message += (
             ""
             if near

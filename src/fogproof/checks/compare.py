@@ -28,12 +28,12 @@ from fogproof.contracts import Draws, Reference
 from fogproof.errors import InvalidValueError, SubjectError
 from fogproof.validate import number
 
-Draw = Callable[[np.random.Generator, int], Any] | Any
+Drawing = Callable[[np.random.Generator, int], Any] | Any
 
 
 def compare_estimators(
-    first: Draw,
-    second: Draw,
+    first: Drawing,
+    second: Drawing,
     *,
     variance: tuple[Reference | float, Reference | float] | None = None,
     bounds: tuple[float, float] | None = None,
@@ -95,7 +95,7 @@ def compare_estimators(
     return Verdict(findings, alpha, pairs.seen.n, seed, seconds, settings, likely_cause(findings), reproduce)
 
 
-def _count(first: Draw, second: Draw, samples: int) -> int:
+def _count(first: Drawing, second: Drawing, samples: int) -> int:
     """Return how many pairs there are at most; two sets of realisations that are there already must be equally large."""
     for draw in (first, second):
         if isinstance(draw, Reference) or (

@@ -15,7 +15,7 @@ import numpy as np
 from fogproof.checks.arguments import alpha_of, seed_of, tolerance_of, whole
 from fogproof.checks.diagnosis import likely_cause
 from fogproof.checks.draws import as_array
-from fogproof.checks.statistics.known import Known
+from fogproof.checks.statistics.known import Declarable, Known
 from fogproof.checks.statistics.means import mean_test
 from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.streams import batch_generator
@@ -26,7 +26,8 @@ from fogproof.errors import InvalidValueError, SubjectError
 
 _ROUNDING = 1e-12  # relative: of sums in another order
 _PROGRESS = 1e-6  # relative: an error that falls by less has stalled
-_SPREAD = 0.1  # share of alpha for the scatter of replicates
+_DOUBT = 1e-4  # probability that the scatter of a right program is doubted: that is no false alarm
+_REPLICATES = Declarable(more="replicates")
 
 
 def check_convergence(
@@ -77,8 +78,8 @@ def check_convergence(
         if all(np.ptp(row, axis=0).max() == 0 for row in rows):
             findings = _not_random(rows, sizes, reference, near)
         else:
-            findings = _levels(rows, sizes, reference, near, (1 - _SPREAD) * alpha)
-            findings += _scatter(rows, sizes, _SPREAD * alpha)
+            findings = _levels(rows, sizes, reference, near, alpha)
+            findings += _scatter(rows, sizes, _DOUBT)
     name = getattr(run, "__qualname__", type(run).__name__)
     reproduce = f"check_convergence({name}, {sizes}, ..., replicates={replicates}, alpha={alpha:g}, seed={seed})"
     total, seconds = replicates * sum(sizes), time.perf_counter() - started
@@ -127,7 +128,9 @@ def _levels(
             label = f"{name}, channel {c}" if channels > 1 else name
             data = Moments.of(np.ascontiguousarray(numbers[:, c]))
             known = Known(0.0, light=True) if data.m2 == 0 and reference is not None else Known(light=True)
-            findings.append(mean_test(label, what, data, float(value[c]), float(error[c]), share, "bias", known))
+            findings.append(
+                mean_test(label, what, data, float(value[c]), float(error[c]), share, "bias", known, ways=_REPLICATES)
+            )
     return findings
 
 
@@ -172,16 +175,16 @@ def _not_random(
     return findings
 
 
-def _scatter(rows: list[np.ndarray], sizes: list[int], alpha: float) -> list[Finding]:
+def _scatter(rows: list[np.ndarray], sizes: list[int], doubt: float) -> list[Finding]:
     """Compare the scatter of replicates with that at the first count, by Fisher's test: it must fall.
 
     Independent samples make variances fall as 1 / n; what does not fall as 1 / sqrt(n) is reported. It may be so where rare bright
-    values were missed at first, so that this alone rejects nothing.
+    values were missed at first, so that this alone rejects nothing; a right program is doubted with probability `doubt`.
     """
     from scipy.special import betainc
 
     freedom = 0.5 * (len(rows[0]) - 1)
-    share = alpha / ((len(rows) - 1) * rows[0].shape[1])
+    share = doubt / ((len(rows) - 1) * rows[0].shape[1])
     high = []
     for row, n in zip(rows[1:], sizes[1:], strict=True):
         slowest = np.sqrt(sizes[0] / n)

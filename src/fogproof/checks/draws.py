@@ -85,6 +85,8 @@ class Source:
             shape = f"({n},)" if self.channels == 1 else f"({n}, {self.channels})"
             fix = "; transpose it: one realisation a row" if x.shape == (self.channels, n) else ""
             fix = fix or ("; give the reference one value a channel" if x.shape[:1] == (n,) and x.ndim == 2 else "")
+            if not fix and self.channels > 1 and x.ndim < 2:
+                fix = f": the reference has {self.channels} channels; a value with its error is Reference(value, error)"
             raise SubjectError(f"{who} must return an array of shape {shape}, got {x.shape}{fix}", f"{who}: value")
         rest = {}
         for name, part in zip(Draws._fields[1:], draws[1:], strict=True):
@@ -125,7 +127,8 @@ def as_array(what: str, value: Any) -> np.ndarray:
             f"{what} cannot be read as an array ({type(error).__name__}: {error}); {fix}", what
         ) from None
     if array.dtype.kind not in "iufb":
-        raise SubjectError(f"{what}: draw must return numbers, got dtype {array.dtype}", what)
+        fix = "; return real and imaginary parts as two channels" if array.dtype.kind == "c" else ""
+        raise SubjectError(f"{what}: draw must return numbers, got dtype {array.dtype}{fix}", what)
     return array
 
 

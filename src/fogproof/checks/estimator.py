@@ -86,13 +86,7 @@ def check_estimator(
     within = bounds_of(bounds, nonnegative)
     declared = Declared(variance, cost, within, tails == "light", near, UNIT_ROUNDOFF[precision])
     labels = _labels_of(reference) if isinstance(reference, Mapping) else None
-    if resolution is None:
-        sizes = batch_sizes(samples)
-        looks = {look.samples: alpha for look in stages(samples, None, alpha, 1.0)}
-    else:
-        number("resolution", resolution, "must be > 0", 0, open_ends=True)
-        sizes, ends = growing_sizes(samples)
-        looks = dict.fromkeys(ends, alpha / len(ends))
+    sizes, looks = _looks(samples, alpha, resolution)
     source = Source(draw, seed, tuple(sizes), _channels_of(reference), "draws", precision)
     seen: Observed | None = None
     judgement = Judgement((), False)
@@ -118,7 +112,18 @@ def check_estimator(
     name = "realisations" if source.finite else getattr(draw, "__qualname__", type(draw).__name__)
     reproduce = f"check_estimator({name}, ..., samples={samples}, alpha={alpha:g}, seed={seed})"
     seconds = time.perf_counter() - started
-    return Verdict(tuple(findings), alpha, seen.n, seed, seconds, settings, likely_cause(findings), reproduce)
+    cause = likely_cause(findings)
+    untested = tuple(finding.message for finding in findings if finding.check == "other orders")
+    return Verdict(tuple(findings), alpha, seen.n, seed, seconds, settings, cause, reproduce, unchecked=untested)
+
+
+def _looks(samples: int, alpha: float, resolution: float | None) -> tuple[list[int], dict[int, float]]:
+    """Return the sizes of batches, and the part of alpha that is spent at each number of samples that is looked at."""
+    if resolution is None:
+        return batch_sizes(samples), {look.samples: alpha for look in stages(samples, None, alpha, 1.0)}
+    number("resolution", resolution, "must be > 0", 0, open_ends=True)
+    sizes, ends = growing_sizes(samples)
+    return sizes, dict.fromkeys(ends, alpha / len(ends))
 
 
 def _labels_of(reference: Known) -> frozenset[int]:

@@ -35,6 +35,8 @@ class Search:
         try:
             verdict = _check(call("make(parameter)", self.make, parameter), samples, alpha, seed, self.options)
         except FogproofError as error:
+            if isinstance(error, InvalidValueError) and error.argument in self.options:
+                raise  # said of all members alike: nobody's fault but the caller's
             verdict = _failed(error, alpha, samples, seed)
         self.tried[repr(parameter)] = (parameter, verdict)
         if verdict.outcome == "rejected":

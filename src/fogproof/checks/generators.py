@@ -24,7 +24,8 @@ from fogproof.checks.verdict import Finding, Outcome, Verdict
 from fogproof.errors import SubjectError
 
 _COLUMNS = 4  # first numbers of every stream that are looked at across streams
-_WINDOW = 4  # successive numbers that are never equal by chance, also in single precision
+_WINDOW = 4  # successive numbers, at least, of a stretch that is looked for elsewhere
+_CHANCE = 1e-3  # share of alpha for stretches that are equal by chance
 _CELLS = 16
 _SHIFTS = (0, 1, 2)
 
@@ -45,9 +46,9 @@ def check_streams(make_rng: Callable[[int], Any], k: int = 1000, *, numbers: int
     u = np.stack([_stream(make_rng, i, numbers) for i in range(k)])
     findings = [_range(u)]
     if findings[0].outcome != "rejected":
-        findings += [_reproducible(make_rng, u, numbers), _overlaps(u)]
+        findings += [_reproducible(make_rng, u, numbers), _overlaps(u, _CHANCE * alpha)]
         jobs = _tests(u)
-        findings += [test(alpha / len(jobs)) for test in jobs]
+        findings += [test((1 - _CHANCE) * alpha / len(jobs)) for test in jobs]
     name = getattr(make_rng, "__qualname__", type(make_rng).__name__)
     reproduce = f"check_streams({name}, {k}, numbers={numbers}, alpha={alpha:g})"
     seconds = time.perf_counter() - started
@@ -91,19 +92,40 @@ def _reproducible(make_rng: Callable[[int], Any], u: np.ndarray, n: int) -> Find
     )
 
 
-def _overlaps(u: np.ndarray) -> Finding:
-    """Look for stretches of four numbers that occur twice, in any stream at any place."""
-    windows = np.lib.stride_tricks.sliding_window_view(u, _WINDOW, axis=1)
-    prints = fingerprints(windows.reshape(-1, _WINDOW))
+def _overlaps(u: np.ndarray, alpha: float) -> Finding:
+    """Look for stretches of numbers that occur twice, in any stream at any place, so long that chance does not repeat them."""
+    length = _stretch(u, alpha)
+    if length > u.shape[1] // 2:
+        message = f"stretches of {u.shape[1] // 2} numbers of so few bits are equal by chance: ask for more numbers="
+        return Finding("overlap", "inconclusive", message, alpha=alpha)
+    windows = np.lib.stride_tricks.sliding_window_view(u, length, axis=1)
+    prints = fingerprints(windows.reshape(-1, length))
     owner = np.repeat(np.arange(len(u)), windows.shape[1])
     order = np.argsort(prints, kind="stable")
     equal = np.flatnonzero(prints[order][1:] == prints[order][:-1])
     if not len(equal):
-        message = f"no {_WINDOW} successive numbers occur twice"
-        return Finding("overlap", "not rejected", message)
+        return Finding("overlap", "not rejected", f"no {length} successive numbers occur twice", alpha=alpha)
     a, b = owner[order][equal[0]], owner[order][equal[0] + 1]
-    message = f"{len(equal)} stretches of {_WINDOW} numbers occur again, the first in streams {a} and {b}"
-    return Finding("overlap", "rejected", message, effect=len(equal) / len(prints), cause="dependent samples")
+    message = f"{len(equal)} stretches of {length} numbers occur again, the first in streams {a} and {b}"
+    effect = len(equal) / len(prints)
+    return Finding("overlap", "rejected", message, alpha=alpha, effect=effect, cause="dependent samples")
+
+
+def _stretch(u: np.ndarray, alpha: float) -> int:
+    """Return how long stretches must be that two of them are equal by chance with probability alpha at most.
+
+    How often two numbers are equal is seen within the streams, where an overlap with another does not show.
+    """
+    streams, n = u.shape
+    ordered = np.sort(u, axis=1)
+    begins = np.ones(u.shape, dtype=bool)
+    begins[:, 1:] = ordered[:, 1:] != ordered[:, :-1]
+    runs = np.diff(np.flatnonzero(np.append(begins.ravel(), True))).astype(np.float64)
+    equal, pairs = float(np.sum(runs * (runs - 1)) / 2), streams * n * (n - 1) / 2
+    alike = min((equal + 6 * math.sqrt(equal) + 6) / pairs, 1.0)
+    if alike == 1:
+        return n
+    return max(_WINDOW, math.ceil(math.log(0.5 * (streams * n) ** 2 / alpha) / -math.log(alike)))
 
 
 def _tests(u: np.ndarray) -> list[Callable[[float], Finding]]:

@@ -17,7 +17,7 @@ from fogproof.checks.statistics.dependence import (
     runs_test,
     spread_of_calls,
 )
-from fogproof.checks.statistics.means import LAWLESS
+from fogproof.checks.statistics.means import DISTRIBUTION_FREE
 from fogproof.checks.verdict import Finding
 
 _DEPENDENCE = 0.05  # share of alpha for the dependence of realisations
@@ -33,7 +33,7 @@ def share_of_means(alpha: float, claims: int, declared: bool) -> tuple[float, fl
     """Return the parts of alpha that one mean has for the usual test, for declared facts, and for bets on them."""
     share = share_of_a_claim(alpha, claims)
     first = (1 - SECOND) * share
-    return (1 - LAWLESS * declared) * first, LAWLESS * first, SECOND * share
+    return (1 - DISTRIBUTION_FREE * declared) * first, DISTRIBUTION_FREE * first, SECOND * share
 
 
 @dataclass(frozen=True)

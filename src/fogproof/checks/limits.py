@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import errno
 import multiprocessing
 import multiprocessing.connection
 import os
@@ -11,7 +13,7 @@ from collections.abc import Callable
 from typing import Any, TypeVar
 
 from fogproof.errors import FogproofError, SubjectError, UnsupportedError
-from fogproof.validate import number
+from fogproof.validate import time_limit
 
 Answer = TypeVar("Answer")
 
@@ -22,7 +24,7 @@ def within(seconds: float, check: Callable[[], Answer]) -> Answer:
     The check runs in a forked copy of this process, so it may be any closure; what it returns must be picklable, as a `Verdict`
     is. A loop in compiled code that never looks at signals is ended all the same. Needs a system that can fork.
     """
-    number("seconds", seconds, "must be > 0 [s]", 0, open_ends=True)
+    time_limit("seconds", seconds)
     if sys.platform == "win32" or "fork" not in multiprocessing.get_all_start_methods():
         raise UnsupportedError("a time limit needs a system that can fork: run the check in a process of your own")
     return _answer_of(multiprocessing.get_context("fork"), seconds, check)
@@ -34,6 +36,8 @@ def isolated(check: Callable[[], Answer], seconds: float | None = None) -> Answe
     Unlike `within` it may be called while other threads are at work, on any system; the check must be picklable: a function of a
     module, or a partial of one.
     """
+    if seconds is not None:
+        time_limit("seconds", seconds)
     name = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
     context = multiprocessing.get_context(name)
     if name == "forkserver":  # what takes seconds to load is loaded once
@@ -54,8 +58,14 @@ _NAME = "fogproof subject"
 def _answer_of(context: Any, seconds: float | None, check: Callable[[], Answer]) -> Answer:
     ours, theirs = context.Pipe(duplex=False)
     child = context.Process(target=_answer, args=(check, theirs), name=_NAME, daemon=True)
-    child.start()
-    theirs.close()
+    try:
+        child.start()
+    except (EOFError, OSError) as error:  # EOFError: the server of processes could start none, and ended
+        ours.close()
+        fix = "end some, or raise the system's limit (ulimit -u)"
+        raise OSError(getattr(error, "errno", None) or errno.EAGAIN, f"no process could be started; {fix}") from None
+    finally:
+        theirs.close()
     try:
         if not ours.poll(seconds):
             raise SubjectError(f"the subject did not return within {seconds:g} s", "sample")
@@ -77,7 +87,8 @@ def _answer_of(context: Any, seconds: float | None, check: Callable[[], Answer])
 def _answer(check: Callable[[], object], pipe: multiprocessing.connection.Connection) -> None:
     parent = multiprocessing.parent_process()
     assert parent is not None
-    threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True).start()
+    with contextlib.suppress(RuntimeError):  # where no more threads may be started nothing watches
+        threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True).start()
     try:
         pipe.send((True, check()))
     except FogproofError as error:

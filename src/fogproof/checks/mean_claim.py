@@ -15,8 +15,9 @@ from fogproof.checks.statistics.cells import MISS
 from fogproof.checks.statistics.heavy import TailEstimate
 from fogproof.checks.statistics.known import Known
 from fogproof.checks.statistics.light import light_tailed_p
-from fogproof.checks.statistics.means import DOUBT, mean_test, trusted, unseen_size
+from fogproof.checks.statistics.means import DOUBT, mean_test, trusted
 from fogproof.checks.statistics.moments import Moments
+from fogproof.checks.statistics.unseen import unseen_size
 from fogproof.checks.verdict import Finding, Outcome, Resolution
 from fogproof.contracts import Draws
 
@@ -97,7 +98,16 @@ class MeanClaim:
         alpha, known = (1 - SECOND) * self.share, self.known
         cause = self.quantity.cause
         finding = mean_test(
-            self.name, self.name, self.data, self.value, self.error, alpha, cause, known, self.uncertain
+            self.name,
+            self.name,
+            self.data,
+            self.value,
+            self.error,
+            alpha,
+            cause,
+            known,
+            self.uncertain,
+            self.quantity.ways,
         )
         if finding.outcome == "inconclusive" and self.quantity.tame and self.data.m2 == 0 and self._absurd():
             side = "too large" if self.data.mean > self.value else "too small"
@@ -105,8 +115,7 @@ class MeanClaim:
             return replace(finding, outcome="rejected", message=message, cause=cause, region=(side,))
         if self.quantity.name == "variance" and "too small" in finding.region and not self._may_fall_short(finding):
             message = f"{finding.message.partition(';')[0]}; rare values that were not seen may hold the rest"
-            message += ": ask for more samples"
-            message += "" if self.known.bounded else ', or declare bounds=(low, high) or tails="light"'
+            message += ": ask for more samples" + ("" if self.known.bounded else self.quantity.ways.of_values())
             return replace(finding, outcome="inconclusive", message=message, p_value=None, cause="", region=())
         if self._too_few(finding):
             message = f"{finding.message}; {self.data.n} are too few: the opposite of the reference would pass"
@@ -126,7 +135,7 @@ class MeanClaim:
 
     def _may_fall_short(self, finding: Finding) -> bool:
         """Return whether a variance that is too small is an error: it is none if rare values can hold what is missing."""
-        return finding.lawless or self.known.light
+        return finding.distribution_free or self.known.light
 
     def _second_look(self, finding: Finding, again: Again, complete: bool) -> Finding:
         alpha, known = SECOND * self.share, self.known
@@ -151,14 +160,22 @@ class MeanClaim:
                 exact=False,
                 cause=cause,
                 region=(side,),
-                lawless=True,
+                distribution_free=True,
             )
         if tail.suspect() and not known.two_sided:
             index, spread = tail.index()
             message = f"{start}; infinite variance suspected, the tail has index {index:.2g} +- {spread:.1g}"
             message += " where 2 is the least: neither a pass nor a failure means anything"
             return replace(
-                finding, outcome="inconclusive", message=message, p_value=None, exact=False, cause="", region=()
+                finding,
+                outcome="inconclusive",
+                message=message,
+                p_value=None,
+                exact=False,
+                resolution=None,
+                interval=None,
+                cause="",
+                region=(),
             )
         if finding.outcome == "inconclusive" and known.variance is not None and complete and p > DOUBT:
             message = f"{start}; rare values matter, so tested by Catoni's function and the exact variance"
@@ -175,7 +192,7 @@ class MeanClaim:
         """
         if finding.outcome != "rejected" or finding.p_value is None or finding.p_value > EARLY * self.share:
             return False
-        return finding.lawless or self._absurd()
+        return finding.distribution_free or self._absurd()
 
 
 def _within(error: float) -> str:

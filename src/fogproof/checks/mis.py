@@ -59,7 +59,9 @@ def check_mis(
     if shares.shape != (len(strategies),) or not (shares > 0).all():
         raise InvalidValueError("counts", "must be one number > 0 for each strategy", counts)
     if exponent is not None:
-        number("exponent", exponent, "must be > 0", 0, open_ends=True)
+        number(
+            "exponent", exponent, "must be > 0 and finite", 0, open_ends=True, fix="None asks for a sum of one alone"
+        )
     techniques = [_Technique.of(i, strategy) for i, strategy in enumerate(strategies)]
     drawn = [technique.points(batch_generator(seed, "mis", i, 0), samples) for i, technique in enumerate(techniques)]
     if len({x.shape[1:] for x in drawn}) > 1:

@@ -106,7 +106,7 @@ def mean_cosine(subject: Subject, chart: Chart, density: Density, leaves: Leaves
     if finding.outcome == "rejected" and finding.effect is not None:
         mean = finding.effect + subject.mean_cosine
         if abs(mean + subject.mean_cosine) > 1e-3 * abs(subject.mean_cosine) + 1e-6:
-            return finding.because("shape")
+            return finding.because("wrong mean cosine")
     return finding
 
 

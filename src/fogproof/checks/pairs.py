@@ -9,7 +9,7 @@ import numpy as np
 
 from fogproof.checks.judgement import Judgement, dependence, judged, share_of_a_claim
 from fogproof.checks.observed import Observed
-from fogproof.checks.quantities import Declared, column, quantities_of
+from fogproof.checks.quantities import OF_A_DIFFERENCE, Declared, column, quantities_of
 from fogproof.checks.statistics.binomial import binomial_p
 from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.verdict import Finding, Outcome
@@ -49,7 +49,7 @@ class Pairs:
         """Return the empty record for two estimators whose first batches are `both`."""
         zero = Reference(np.zeros(both[0].value.shape[1]))
         mean, *more = quantities_of(zero, declared, None)
-        quantities = [replace(mean, signed=True), *more]
+        quantities = [replace(mean, signed=True, ways=OF_A_DIFFERENCE), *more]
         alone = [Observed.of(quantities_of(zero, Declared(), None), draws) for draws in both]
         signs = np.zeros((2, both[0].value.shape[1]), dtype=np.int64)
         plain = Declared(light=declared.light, roundoff=declared.roundoff)
@@ -129,7 +129,7 @@ class Pairs:
             finding = replace(finding, outcome=outcome, message=message, p_value=p, alpha=alpha, exact=False)
         elif (a.low == a.high) != (b.low == b.high) and not self.declared.known(self._variance).two_sided:
             message = f"{start}; one of them never varies, and a value too rare to be seen may hold the difference"
-            message += ": ask for more samples, or declare bounds=(low, high) or the exact variances"
+            message += ": ask for more samples, or declare bounds=(low, high) or the exact variance=(first, second)"
             finding = replace(finding, outcome="inconclusive", message=message, p_value=None, resolution=None)
         rejected = finding.outcome == "rejected"
         larger = ("the first is the larger",) if effect > 0 else ("the second is the larger",)

@@ -62,7 +62,7 @@ def samples_for(
         raise InvalidValueError("variance, probability or bounds", "must be given, one of them", given)
     declared = bounds is not None or whatever_the_law
     claims = int(channels) * (2 if whatever_the_law else 1)
-    usual, lawless, bets = share_of_means(false_fail, claims, declared)
+    usual, distribution_free, bets = share_of_means(false_fail, claims, declared)
     if probability is not None:
         p = number("probability", probability, "must lie in [0, 1]", 0, 1)
         number("bias", bias, "must leave a probability, one way at least", 0, max(p, 1 - p))
@@ -71,7 +71,7 @@ def samples_for(
         low, high = bounds_of(bounds)
         number("bias", bias, "must be possible within the bounds", 0, high - low)
         known = Known(low=low, high=high)
-        return _smallest(lambda n: detectable(n, known, lawless, false_pass), bias)
+        return _smallest(lambda n: detectable(n, known, distribution_free, false_pass), bias)
     v = number("variance", variance, "must be > 0", 0, open_ends=True)
     if whatever_the_law:
         return _smallest(lambda n: Bets(0.0, 0.0, Known(v), n, bets).detectable(false_pass), bias)

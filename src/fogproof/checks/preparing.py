@@ -26,7 +26,7 @@ from fogproof.checks.mixture import MixtureTest
 from fogproof.checks.normalisation import albedo, mean_cosine
 from fogproof.checks.pilot import LARGE_PILOT, PILOT, Pilot, draw_pilot
 from fogproof.checks.prepared import Prepared
-from fogproof.checks.probes import pdf_twice, precision_agreement, reference_agreement, support_of_eval
+from fogproof.checks.probes import pdf_twice, precision_agreement, reference_agreement, support_of_eval, writing
 from fogproof.checks.promises import at_any_atom, inside
 from fogproof.checks.purity import purity
 from fogproof.checks.statistics.serial import in_units
@@ -44,6 +44,7 @@ _CANCELLED = 4.0  # units in the last place of an axis that single precision may
 def prepare(subject: Subject, samples: int, seed: int) -> Prepared:
     """Integrate the claim, lay out cells for up to `samples` samples, and ask all single questions."""
     pilot = draw_pilot(subject, seed)
+    subject, written = writing(subject, pilot.points)
     subject, no_support = supported(subject, pilot.points)
     no_inverse = why_not_inverse(subject, pilot.points)
     if no_inverse:
@@ -55,7 +56,8 @@ def prepare(subject: Subject, samples: int, seed: int) -> Prepared:
     own = subject.dimensions is None and not subject.quasi_random
     calls = small_calls(subject, seed) if own else None
     disbelieved = tuple(filter(None, (no_breaks, no_support, no_inverse)))
-    return replace(prepared, calls=calls, seed=seed, disbelieved=disbelieved)
+    findings = (*written, *prepared.findings)
+    return replace(prepared, findings=findings, calls=calls, seed=seed, disbelieved=disbelieved)
 
 
 def _prepared(subject: Subject, samples: int, seed: int, pilot: Pilot, chart: Chart | None) -> Prepared:

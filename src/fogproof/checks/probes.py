@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -27,6 +28,17 @@ def reference_agreement(subject: Subject, points: np.ndarray) -> Finding:
     p = subject.density(points)
     slack = reference.error + rounding_spread(subject.density, points, subject.roundoff)
     return agreement("pdf against the reference", p, np.broadcast_to(reference.value, p.shape), slack, points)
+
+
+def writing(subject: Subject, points: np.ndarray) -> tuple[Subject, list[Finding]]:
+    """The pdf must leave its points as they are: return the subject, and a finding if it does not; its pdf gets copies then."""
+    kept = points[:_ASKED].copy()
+    subject.density(kept)
+    if np.array_equal(kept, points[:_ASKED], equal_nan=True):
+        return subject, []
+    message, pdf = "pdf(x) writes into x, which belongs to its caller; copy it first", subject.pdf
+    finding = Finding("function of its point", "rejected", message, cause="writes into its points")
+    return replace(subject, pdf=lambda x: pdf(x.copy())), [finding]
 
 
 def pdf_twice(subject: Subject, points: np.ndarray) -> list[Finding]:

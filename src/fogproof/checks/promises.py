@@ -28,6 +28,10 @@ _CAUSES = {
 }
 
 
+_POLE = ": take the distance from it for the coordinate, where numbers are finer, and what is there is judged too"
+_TELLING = {" times pdf)": "wrong measure", "pdf is nan at": "not a number", "pdf is -": "negative pdf"}
+"""Words of an example that say more than the name of the promise."""
+
 _USUAL = 4.0  # times the median: noise has tails
 
 
@@ -203,10 +207,11 @@ class Watch:
             if name in self.broken:
                 count, example = self.broken[name]
                 if name == "infinite pdf":
-                    message = f"{count} of {n} samples: {example}; a pole so strong that rounding gathers samples on it"
+                    message = f"{count} of {n} samples: {example}; a pole so strong that rounding gathers samples on it{_POLE}"
                     found.append(Finding(name, "inconclusive", message, effect=count / n))
                     continue
-                cause = "wrong measure" if "times pdf" in example else _CAUSES[name]
+                telling = (cause for words, cause in _TELLING.items() if words in example)
+                cause = next(telling, _CAUSES[name])
                 message = f"{count} of {n} samples: {example}"
                 found.append(Finding(name, "rejected", message, effect=count / n, cause=cause))
             else:

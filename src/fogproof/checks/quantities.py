@@ -8,10 +8,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fogproof.checks.statistics.known import NOTHING, Known
+from fogproof.checks.statistics.known import NOTHING, NOTHING_MORE, Declarable, Known
 from fogproof.contracts import Draws, Reference
 from fogproof.errors import InvalidValueError, SubjectError
 from fogproof.validate import require
+
+_BOUNDS, _TAILS = "bounds=(low, high)", 'tails="light"'
+OF_A_MEAN = Declarable(
+    "the exact variance=", "variance=0 if the estimator has none, its exact variance=", _BOUNDS, _TAILS
+)
+OF_A_DIFFERENCE = Declarable(
+    "the exact variance=(first, second)", "the exact variance=(first, second), 0 for one that has none", _BOUNDS, _TAILS
+)
+_WITHOUT_VARIANCE = Declarable(bounds=_BOUNDS, tails=_TAILS)
 
 
 @dataclass(frozen=True)
@@ -27,6 +36,7 @@ class CheckedQuantity:
     own      (channels,) what of that is the reference's own, where the rest is tolerated; None if it is all
     tame     whether an event a hundred times larger than all that was seen is out of the question
     signed   whether numbers of both signs are usual, so that it tells nothing if none was negative
+    ways     what the caller may declare about it
     """
 
     name: str
@@ -38,6 +48,7 @@ class CheckedQuantity:
     own: np.ndarray | None = None
     tame: bool = False
     signed: bool = False
+    ways: Declarable = NOTHING_MORE
 
     def known_of(self, channel: int) -> Known:
         """Return what is declared of the numbers of one channel."""
@@ -98,7 +109,15 @@ def quantities_of(
         largest = np.maximum((high - value) ** 2, (value - low) ** 2)
         squares = tuple(Known(low=0.0, high=float(one), light=declared.light) for one in largest)
         more.append(
-            CheckedQuantity("variance", lambda d: _squared(d.value - value), v, v_error, "wrong variance", squares)
+            CheckedQuantity(
+                "variance",
+                lambda d: _squared(d.value - value),
+                v,
+                v_error,
+                "wrong variance",
+                squares,
+                ways=_WITHOUT_VARIANCE,
+            )
         )
     if stderr is not None:
         unit = _unit(stderr)
@@ -113,7 +132,8 @@ def quantities_of(
                 cause,
             )
         )
-    return [CheckedQuantity("mean", lambda d: d.value, value, error, "bias", tuple(known), own), *more, *cost]
+    mean = CheckedQuantity("mean", lambda d: d.value, value, error, "bias", tuple(known), own, ways=OF_A_MEAN)
+    return [mean, *more, *cost]
 
 
 def _rounding_of_variance(v: np.ndarray, value: np.ndarray, roundoff: float) -> np.ndarray:
@@ -137,7 +157,14 @@ def _order(label: int, reference: Reference | float, declared: Declared) -> Chec
         return np.where(column(d.order) == label, d.value, 0.0)
 
     return CheckedQuantity(
-        f"mean of order {label}", numbers, value, declared.widened(value, error), "bias", known, error
+        f"mean of order {label}",
+        numbers,
+        value,
+        declared.widened(value, error),
+        "bias",
+        known,
+        error,
+        ways=_WITHOUT_VARIANCE,
     )
 
 

@@ -249,6 +249,15 @@ def _options(subject: Subject) -> str:
         f", {name}={name}" for name in ("cdf", "eval", "reference", "inverse") if getattr(subject, name) is not None
     ]
     names = ("atoms", "axis", "mean_cosine", "albedo", "events", "uniform_bits", "quasi_random", "breaks", "support")
-    values = [f", {name}={getattr(subject, name)!r}" for name in names if getattr(subject, name)]
+    values = [f", {name}={_plain(getattr(subject, name))!r}" for name in names if getattr(subject, name)]
     precision = [f", precision={subject.precision!r}"] if subject.precision != "float64" else []
     return "".join(functions + values + precision)
+
+
+def _plain(value: Any) -> Any:
+    """Return a declared value without NumPy in it: the line that repeats a verdict needs no import of it."""
+    if isinstance(value, Mapping):
+        return {_plain(key): _plain(each) for key, each in value.items()}
+    if isinstance(value, tuple):
+        return tuple(map(_plain, value))
+    return value.tolist() if isinstance(value, (np.ndarray, np.generic)) else value

@@ -20,7 +20,9 @@ def fresh_seed() -> int:
 
 def batch_generator(seed: int, name: str, stage: int, index: int) -> np.random.Generator:
     """Return the generator of batch `index` in `stage` of the case `name`."""
-    words = np.frombuffer(hashlib.blake2b(name.encode(), digest_size=16).digest(), dtype=np.uint32)
+    words = np.frombuffer(
+        hashlib.blake2b(name.encode("utf-8", "surrogatepass"), digest_size=16).digest(), dtype=np.uint32
+    )
     return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(*map(int, words), stage, index)))
 
 

@@ -20,6 +20,7 @@ from fogproof.checks.statistics.binomial import binomial
 from fogproof.checks.statistics.cells import blocks
 from fogproof.checks.statistics.chi_square import chi_square_along, joint
 from fogproof.checks.statistics.evenness import evenness_test
+from fogproof.checks.statistics.known import Declarable
 from fogproof.checks.statistics.kolmogorov import kolmogorov
 from fogproof.checks.statistics.means import mean_test
 from fogproof.checks.statistics.moments import Moments
@@ -46,7 +47,7 @@ def tests_of(prepared: Prepared, tally: Tally) -> list[Test]:
 
     vacuum = 1 - sum(subject.atoms.values()) <= FLOOR[subject.precision]  # nothing is left for a density
     if prepared.counted and not vacuum:
-        _add_cells(add, grid, tally)
+        _add_cells(add, grid, tally, 2.0**-subject.bits)
     if prepared.counter.mixture is not None and not vacuum:
         _add_labels(add, prepared.counter.mixture, tally)
     _add_streams(add, prepared, tally, vacuum)
@@ -101,8 +102,8 @@ def _add_streams(add: Callable[..., None], prepared: Prepared, tally: Tally, vac
         add("repeated points", repeats_test, "repeated points", tally.prints, prepared.expected_repeats)
 
 
-def _add_cells(add: Callable[..., None], grid: Grid, tally: Tally) -> None:
-    """Add the tests of counts in cells of known probability."""
+def _add_cells(add: Callable[..., None], grid: Grid, tally: Tally, grain: float) -> None:
+    """Add the tests of counts in cells of known probability; `grain` is the step of the sampler's uniforms."""
     several = len(grid.marginals) > 1
     for axis, (marginal, counts) in enumerate(zip(grid.marginals, tally.fine, strict=True)):
         if len(counts) < 2:
@@ -114,7 +115,7 @@ def _add_cells(add: Callable[..., None], grid: Grid, tally: Tally) -> None:
         add("scan", scan, f"scan{along}", marginal, counts)
         if marginal.ends:
             low, high = tally.extremes[axis]
-            add("ends", scan_ends, f"ends{of}", marginal, counts, low, high)
+            add("ends", scan_ends, f"ends{of}", marginal, counts, low, high, grain)
     if grid.plane is not None and tally.plane is not None:
         plane, coarse = grid.plane, blocks(tally.plane, len(grid.plane.mass))
         labels = (grid.marginals[0].label, grid.marginals[1].label)
@@ -137,5 +138,8 @@ def _add_labels(add: Callable[..., None], mixture: MixtureTest, tally: Tally) ->
     add("largest cell", labels.largest, "labels, largest cell", mixture.describe, conventions)
 
 
+_WEIGHTS = Declarable(other="give eval, and every single weight is held to eval(x) / pdf(x)")
+
+
 def _mean_weight(name: str, data: Moments, claimed: float, alpha: float) -> Finding:
-    return mean_test(name, name, data, claimed, 1e-6 * abs(claimed), alpha, "wrong weight")
+    return mean_test(name, name, data, claimed, 1e-6 * abs(claimed), alpha, "wrong weight", ways=_WEIGHTS)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 from fogproof.checks.json_values import jsonable
+from fogproof.checks.names import channels_aside, in_ranges
 from fogproof.errors import FogproofError, UnsupportedError
 from fogproof.text import p_value
 
@@ -86,7 +87,7 @@ class Finding:
     interval    where the true effect lies
     region      where the misfit is, and in which direction, in words
     cause       the likely class of error where it is rejected: "normalisation", "wrong measure", "atom", ...
-    lawless     True if the p-value holds whatever the law of the values
+    distribution_free     True if the p-value holds whatever the law of the values
     """
 
     check: str
@@ -98,11 +99,11 @@ class Finding:
     statistic: float | None = None
     effect: float | None = None
     resolution: Resolution | None = None
-    figure: dict[str, Any] | None = None
+    figure: dict[str, Any] | None = field(default=None, hash=False)
     interval: EffectInterval | None = None
     region: tuple[str, ...] = ()
     cause: str = ""
-    lawless: bool = False
+    distribution_free: bool = False
 
     def located(self, region: str) -> Finding:
         """Return the finding with one more word on where the misfit is."""
@@ -128,7 +129,7 @@ class Verdict:
     samples: int
     seed: int
     seconds: float = 0.0
-    settings: dict[str, Any] = field(default_factory=dict)
+    settings: dict[str, Any] = field(default_factory=dict, hash=False)
     cause: str = ""
     reproduce: str = ""
     diagnosis: str = ""
@@ -149,8 +150,10 @@ class Verdict:
 
     @property
     def resolution(self) -> Resolution | None:
-        """The resolution of the first finding that states one: the headline of a pass."""
-        return next((f.resolution for f in self.findings if f.resolution is not None and f.resolution.miss > 0), None)
+        """The resolution of the first finding that states one, the headline of a pass: of channels alike, the coarsest."""
+        stated = [f.resolution for f in self.findings if f.resolution is not None and f.resolution.miss > 0]
+        alike = [one for one in stated if channels_aside(one.kind) == channels_aside(stated[0].kind)]
+        return max(alike, key=lambda one: one.value, default=None)
 
     def raise_if_rejected(self) -> None:
         """Raise `RejectedError` with the whole explanation if the outcome is "rejected"."""
@@ -189,10 +192,10 @@ class Verdict:
             told = found if most is None or len(found) <= most + 1 else found[:most]
             lines += [f"  {f.outcome:12}  {_line_of(f)}" for f in told]
             if more := [f.check for f in found[len(told) :]]:
-                lines.append(f"  {outcome:12}  by {len(more)} more: {', '.join(more)}")
+                lines.append(f"  {outcome:12}  by {len(more)} more: {', '.join(in_ranges(more))}")
         passed = [f.check for f in self.findings if f.outcome == "not rejected"]
         if passed:
-            lines.append(f"  not rejected: {', '.join(passed)}")
+            lines.append(f"  not rejected: {', '.join(in_ranges(passed))}")
         if self.resolution is not None:
             lines.append(f"  {self.resolution}")
         allowed = [

@@ -13,6 +13,7 @@ import click
 from fogproof.cli.force import FORCE
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
+from fogproof.cli.values import SECONDS_OR_NONE
 
 
 @click.command("bench")
@@ -27,7 +28,7 @@ from fogproof.cli.terminal import say
 )
 @click.option(
     "--seconds",
-    type=click.FloatRange(min=0.0),
+    type=SECONDS_OR_NONE,
     default=8.0,
     show_default=True,
     help="For each benchmark, by the clock.",

@@ -8,7 +8,8 @@ import click
 
 from fogproof.checks.json_values import jsonable
 from fogproof.cli.terminal import say
-from fogproof.pipe.check import Outcome, Settings, check_file, check_program
+from fogproof.cli.values import POSITIVE, PROBABILITY, SECONDS
+from fogproof.pipe.check import Checked, Settings, check_file, check_program
 from fogproof.pipe.process import Timeouts
 
 _CODES = {"not rejected": 0, "rejected": 1, "inconclusive": 3}
@@ -19,14 +20,18 @@ _CODES = {"not rejected": 0, "rejected": 1, "inconclusive": 3}
 @click.option("--exec", "program", metavar="COMMAND", help="The program and its arguments; no shell reads it.")
 @click.option("--spec", required=True, metavar="SPEC.toml", help="What it is, and how to judge it; see docs/pipe.md.")
 @click.option("--samples", type=click.IntRange(min=100), help="Most samples; 1000000 by default, of a file all.")
-@click.option("--alpha", type=float, default=1e-6, show_default=True, help="False-alarm probability of this check.")
+@click.option(
+    "--alpha", type=PROBABILITY, default=1e-6, show_default=True, help="False-alarm probability of this check."
+)
 @click.option("--seed", type=click.IntRange(min=0), help="A fresh one is drawn and printed by default.")
-@click.option("--resolution", type=float, help="The smallest error of interest: stop as soon as it would be seen.")
-@click.option("--start-timeout", type=float, default=Timeouts.start, show_default=True, help="Seconds to its greeting.")
-@click.option("--timeout", type=float, default=Timeouts.answer, show_default=True, help="Seconds to each answer.")
+@click.option("--resolution", type=POSITIVE, help="The smallest error of interest: stop as soon as it would be seen.")
+@click.option(
+    "--start-timeout", type=SECONDS, default=Timeouts.start, show_default=True, help="Seconds to its greeting."
+)
+@click.option("--timeout", type=SECONDS, default=Timeouts.answer, show_default=True, help="Seconds to each answer.")
 @click.option(
     "--end-timeout",
-    type=float,
+    type=SECONDS,
     default=Timeouts.end,
     show_default=True,
     help="Seconds from the end of its input to its own.",
@@ -65,7 +70,7 @@ def command(
     return _CODES[outcome.verdict.outcome]
 
 
-def _tell(outcome: Outcome, as_json: bool) -> None:
+def _tell(outcome: Checked, as_json: bool) -> None:
     verdict = outcome.verdict
     if as_json:
         say(json.dumps(jsonable({**verdict.to_dict(), "notes": outcome.notes, "stderr": outcome.said})))

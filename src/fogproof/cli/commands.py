@@ -17,7 +17,7 @@ from typing import Any, TextIO
 import click
 
 from fogproof.cli.signals import code_of, stoppable
-from fogproof.cli.terminal import say
+from fogproof.cli.terminal import BAD_INPUT, UNREAD, code_of_stdout, say, silence
 from fogproof.errors import FogproofError, stop_behind
 from fogproof.text import one_line
 
@@ -60,7 +60,7 @@ class _LazyGroup(click.Group):
     def invoke(self, ctx: click.Context) -> Any:
         try:
             with _seen_as_unread():
-                return super().invoke(ctx)
+                return super().invoke(ctx) or code_of_stdout(ctx)
         except Exception as error:
             stop = stop_behind(error)
             if stop is None:
@@ -100,31 +100,40 @@ def _run(arguments: list[str] | None) -> int:
     except SystemExit as end:
         raise end
     except FogproofError as error:
-        code = _say(error, _BAD_INPUT)
+        code = _say(error, BAD_INPUT)
     except click.ClickException as error:
         words = io.StringIO()
         error.show(words)
-        code = _say(words.getvalue().rstrip("\n"), _BAD_INPUT, "")
+        code = _say(words.getvalue().rstrip("\n"), BAD_INPUT, "")
     except (click.Abort, KeyboardInterrupt) as stop:
         code = _say("stopped", code_of(stop.__cause__ or stop))  # click makes an Abort of the signal's exception
     except BrokenPipeError:
-        code = _nobody_reads()
+        silence(sys.stdout)
+        code = UNREAD
     except OSError as error:
-        code = _say(f"{error.strerror or error}{f': {error.filename}' if error.filename else ''}", _BAD_INPUT)
+        code = _say(f"{error.strerror or error}{f': {error.filename}' if error.filename else ''}", BAD_INPUT)
         if error.errno in (errno.ENOSPC, errno.EIO) and error.filename is None:
-            _nobody_reads()  # what could not be written must not be tried again at the end
+            silence(sys.stdout)
+    except RuntimeError as error:
+        if not any(words in str(error) for words in ("can't start new thread", "before it is started")):
+            return _fault(error)
+        code = _say("the system allows no more threads; end some, or raise its limit (ulimit -u)", BAD_INPUT)
     except MemoryError:
-        code = _say("there is not enough memory for this; ask for less at a time", _BAD_INPUT)
+        code = _say("there is not enough memory for this; ask for less at a time", BAD_INPUT)
     except Exception as error:
-        where = traceback.extract_tb(error.__traceback__)[-1]
-        what = f"{type(error).__name__}: {error} ({Path(where.filename).name}, line {where.lineno})"
-        code = _say(f"a fault of fogproof's own, please report it with the command: {what}", _FAULT)
-        if os.environ.get("FOGPROOF_DEBUG"):
-            traceback.print_exc()
+        code = _fault(error)
     return code
 
 
-_BAD_INPUT, _FAULT, _UNREAD = 2, 70, 141
+def _fault(error: Exception) -> int:
+    where = traceback.extract_tb(error.__traceback__)[-1]
+    what = f"{type(error).__name__}: {error} ({Path(where.filename).name}, line {where.lineno})"
+    if os.environ.get("FOGPROOF_DEBUG"):
+        traceback.print_exc()
+    return _say(f"a fault of fogproof's own, please report it with the command: {what}", _FAULT)
+
+
+_FAULT = 70
 
 
 def _say(message: object, code: int, who: str = "fogproof: ") -> int:
@@ -151,7 +160,8 @@ def _seen_as_unread() -> Iterator[None]:
     try:
         yield
     except BrokenPipeError:
-        raise click.exceptions.Exit(_nobody_reads()) from None
+        silence(sys.stdout)
+        raise click.exceptions.Exit(UNREAD) from None
 
 
 def _unread() -> TextIO:
@@ -159,10 +169,3 @@ def _unread() -> TextIO:
     reading, writing = os.pipe()
     os.close(reading)
     return open(writing, "w", encoding="utf-8")
-
-
-def _nobody_reads() -> int:
-    """Let what is still buffered for stdout go nowhere: Python would try again at its end, and complain."""
-    with contextlib.suppress(OSError, ValueError, AttributeError):
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    return _UNREAD

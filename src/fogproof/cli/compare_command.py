@@ -9,6 +9,7 @@ import click
 
 from fogproof.cli.force import FORCE
 from fogproof.cli.terminal import say
+from fogproof.cli.values import PROBABILITY, RELATIVE
 from fogproof.images.compare import compare_image
 from fogproof.images.judging import ALPHA, TOLERANCE, ImageComparison
 from fogproof.images.pairs import compare_pictures
@@ -23,10 +24,10 @@ SCENES = (".toml", ".json")
     "--with", "others", multiple=True, metavar="IMAGE", help="Compare with this image, without an oracle; repeatable."
 )
 @click.option(
-    "--tolerance", type=float, default=TOLERANCE, show_default=True, help="Relative error that does not matter."
+    "--tolerance", type=RELATIVE, default=TOLERANCE, show_default=True, help="Relative error that does not matter."
 )
 @click.option(
-    "--alpha", type=float, default=ALPHA, show_default=True, help="False-alarm probability of all tests together."
+    "--alpha", type=PROBABILITY, default=ALPHA, show_default=True, help="False-alarm probability of all tests together."
 )
 @click.option("--layer", default="", help="Layer of the channels, in files of several.")
 @click.option(

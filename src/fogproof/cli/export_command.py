@@ -32,7 +32,7 @@ def command(scene: str, target: str, output: Path | None) -> int:
     import json
 
     from fogproof.renderers.table import script_of
-    from fogproof.reports.files import write_file
+    from fogproof.reports.files import write_output
     from fogproof.scene.files import read_image_scene
     from fogproof.scene.to_json import to_json
 
@@ -46,5 +46,6 @@ def command(scene: str, target: str, output: Path | None) -> int:
     if output is None:
         click.echo(text, nl=False)
     else:
-        say(f"{write_file(output, text)}", err=True)
+        write_output(output, text, scene)
+        say(output, err=True)
     return 0

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import io
 import sys
 from collections.abc import Callable
-from pathlib import Path
+from functools import partial
 from typing import Any
 
 import click
 
 from fogproof.cli.terminal import requests_on_stdin
-from fogproof.errors import FogproofError, InvalidInputError
+from fogproof.errors import FogproofError, InvalidInputError, TooLargeError
 from fogproof.golden import golden_entries, to_c, to_csv, to_json_document, to_npz
 from fogproof.input_files import read_requests
+from fogproof.oracle.limits import Limits
 from fogproof.oracle.requests import read_request
+from fogproof.reports.files import write_output
 
 FORMATS: dict[str, Callable[..., str | bytes]] = {"json": to_json_document, "csv": to_csv, "c": to_c, "npz": to_npz}
 
@@ -42,27 +45,24 @@ def command(quantities: tuple[str, ...], kind: str, requests: str | None, output
         sys.stdout.buffer.write(raw)
         sys.stdout.buffer.flush()
         return 0
-    try:
-        Path(output).write_bytes(raw)
-    except OSError as error:
-        raise InvalidInputError(f"cannot write {output}: {error.strerror}", output) from None
+    write_output(output, raw, *([requests] if requests is not None else []))
     return 0
 
 
 def _read(path: str) -> list[dict[str, Any]]:
-    """Return the requests of a file of JSON lines; a bad one is named with its line."""
-    try:
-        content = requests_on_stdin().read() if path == "-" else read_requests(path)
-        lines = content.decode("utf-8-sig").split("\n")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
-        raise InvalidInputError(f"cannot read the request file {path}: {reason}", path) from None
+    """Return the requests of a file of JSON lines; the first bad one is named, and nothing after it is waited for."""
+    lines = requests_on_stdin() if path == "-" else io.BytesIO(read_requests(path))
     found = []
-    for number, line in enumerate(lines, start=1):
-        if not line.strip():
-            continue
+    for number, line in enumerate(iter(partial(lines.readline, Limits.bytes + 1), b""), start=1):
         try:
-            request = read_request(line)
+            if len(line) > Limits.bytes:
+                raise TooLargeError(f"the line is longer than {Limits.bytes} bytes")
+            text = line.decode("utf-8-sig" if number == 1 else "utf-8")
+            if not text.strip():
+                continue
+            request = read_request(text)
+        except UnicodeDecodeError:
+            raise InvalidInputError(f"{path}, line {number}: it is not UTF-8 text", path) from None
         except FogproofError as error:
             raise InvalidInputError(f"{path}, line {number}: {error}", path) from None
         if not isinstance(request, dict):

@@ -12,6 +12,7 @@ from pathlib import Path
 import click
 
 from fogproof.cli.terminal import requests_on_stdin, say
+from fogproof.cli.values import SECONDS_OR_NONE
 from fogproof.input_files import read_requests
 from fogproof.oracle import Limits, schema, serve
 from fogproof.quantities import quantities
@@ -31,7 +32,13 @@ from fogproof.quantities import quantities
     "--rigorous", is_flag=True, help="Prove every answer by ball arithmetic (slow; needs the extra 'rigorous')."
 )
 @click.option("--max-values", default=Limits.values, show_default=True, help="Numbers in one answer, at most.")
-@click.option("--timeout", default=Limits.seconds, show_default=True, help="Seconds for one answer, 0 for no limit.")
+@click.option(
+    "--timeout",
+    type=SECONDS_OR_NONE,
+    default=Limits.seconds,
+    show_default=True,
+    help="Seconds for one answer, 0 for no limit.",
+)
 @click.option("--max-bytes", default=Limits.bytes, show_default=True, help="Length of a request, at most.")
 def command(
     request: str | None,
@@ -73,9 +80,11 @@ def _image(scene_file: str, output: Path) -> int:
     """Write the image of a scene."""
     from fogproof.analytic import image
     from fogproof.images.formats import format_of, layers
+    from fogproof.reports.files import require_other
     from fogproof.scene.files import read_image_scene
 
     format_ = format_of(output)
+    require_other(output, scene_file)
     found = image(read_image_scene(scene_file))
     channels = layers(found.value)
     if output.suffix.lower() == ".exr":

@@ -12,6 +12,7 @@ import click
 from fogproof.cli.force import FORCE
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
+from fogproof.cli.values import PROBABILITY, RELATIVE, SECONDS
 from fogproof.images.judging import ALPHA, TOLERANCE
 from fogproof.images.relation_run import RelationRun, count_relations, run_relations, write_record
 from fogproof.renderers.table import renderer_of
@@ -39,12 +40,14 @@ from fogproof.renderers.table import renderer_of
 @click.option("--integrators", default="", metavar="NAME,...", help="Integrators of a command with {integrator} in it.")
 @click.option("--python", default=sys.executable, help="Interpreter that has the renderer; this one by default.")
 @click.option(
-    "--tolerance", type=float, default=TOLERANCE, show_default=True, help="Relative error that does not matter."
+    "--tolerance", type=RELATIVE, default=TOLERANCE, show_default=True, help="Relative error that does not matter."
 )
-@click.option("--alpha", type=float, default=ALPHA, show_default=True, help="False-alarm probability of the whole run.")
+@click.option(
+    "--alpha", type=PROBABILITY, default=ALPHA, show_default=True, help="False-alarm probability of the whole run."
+)
 @click.option("--no-oracle", is_flag=True, help="Leave the oracle out, and hold the renderer to itself alone.")
 @click.option(
-    "--time-limit", "seconds", type=float, default=600.0, show_default=True, help="Longest a render may take [s]."
+    "--time-limit", "seconds", type=SECONDS, default=600.0, show_default=True, help="Longest a render may take [s]."
 )
 @FORCE
 @click.option("--json", "as_json", is_flag=True, help="Print rows as JSON, one a line.")

@@ -12,6 +12,7 @@ import click
 from fogproof.cli.force import FORCE
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
+from fogproof.cli.values import PROBABILITY, RELATIVE, SECONDS
 from fogproof.images.judging import ALPHA, TOLERANCE
 from fogproof.images.renders import Wanted, render_scenes, write_page
 from fogproof.renderers.table import renderer_of
@@ -34,10 +35,12 @@ from fogproof.renderers.table import renderer_of
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the renderer.")
 @click.option("--python", default=sys.executable, help="Interpreter that has the renderer; this one by default.")
 @click.option(
-    "--tolerance", type=float, default=TOLERANCE, show_default=True, help="Relative error that does not matter."
+    "--tolerance", type=RELATIVE, default=TOLERANCE, show_default=True, help="Relative error that does not matter."
 )
-@click.option("--alpha", type=float, default=ALPHA, show_default=True, help="False-alarm probability of each scene.")
-@click.option("--time-limit", "seconds", type=float, metavar="SECONDS", help="Longest a render may take.")
+@click.option(
+    "--alpha", type=PROBABILITY, default=ALPHA, show_default=True, help="False-alarm probability of each scene."
+)
+@click.option("--time-limit", "seconds", type=SECONDS, metavar="SECONDS", help="Longest a render may take.")
 @FORCE
 @click.option("--json", "as_json", is_flag=True, help="Print rows as JSON, one a line.")
 def command(

@@ -8,6 +8,7 @@ import click
 
 from fogproof.cli.force import FORCE
 from fogproof.cli.terminal import say
+from fogproof.errors import InvalidInputError
 
 
 @click.command("report")
@@ -44,8 +45,15 @@ def command(folder: Path, older: Path | None, force: bool) -> int:
     before = read_record(older) if older else None
     code = 0 if before is None else compare_exit_code(before, record)
     prepare_folder(folder, REPORT if before is None else (*REPORT, *COMPARISON), force)
-    page = write_report(record, folder, keep=True)
-    if before is not None:
-        page = write_comparison(before, record, folder)
+    try:
+        page = write_report(record, folder, keep=True)
+        if before is not None:
+            page = write_comparison(before, record, folder)
+    except (InvalidInputError, OSError):
+        raise
+    except Exception as error:  # whatever somebody made of a record that has passed its schema
+        what = f"{type(error).__name__}: {error}"
+        where = " and ".join(str(path / "results.json") for path in filter(None, (folder, older)))
+        raise InvalidInputError(f"no page can be made of {where}, as if changed by hand: {what}", str(folder)) from None
     say(str(page))
     return code

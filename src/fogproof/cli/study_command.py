@@ -73,7 +73,7 @@ def command(
         )
     if stop.code:
         if not (folder / "results.json").exists():
-            say(f"fogproof: stopped before anything was drawn; start again with: {called}", err=True)
+            say(f"fogproof: stopped before anything was drawn in this run; start again with: {called}", err=True)
             return stop.code
         page = write_report(read_record(folder), folder, keep=True)
         say(f"fogproof: stopped; what was drawn is kept, go on with: {called}\npage: {page}", err=True)
@@ -98,7 +98,7 @@ def _print_rows(record: dict[str, Any]) -> None:
         reference = scene["reference"]
         unit = "" if scene["unit"] == "1" else f" {scene['unit']}"
         say(f"{one_line(scene['name'])}: {scene['quantity']}, reference {reference['value']:.9g}{unit}")
-        place = {name: k for k, name in enumerate([*scene["answer"]["ranking"], *scene["answer"]["out"]])}
+        place = {name: k for k, name in enumerate([*scene["answer"]["ranking"], *scene["answer"]["unranked"]])}
         errors: list[dict[str, Any]] = next(
             (e["speed"]["targets"] for e in scene["estimators"] if e["speed"] and e["speed"]["targets"]), []
         )
@@ -166,7 +166,7 @@ def _explain(record: dict[str, Any]) -> None:
         say(f"\n{place} failed {failure['attempts']} times: {failure['error']}", err=True)
     if record["advice"]:
         say(f"\n{record['advice']}", err=True)
-    if record["mixed"]:
+    if record["mixed_environments"]:
         say("\nbatches of different versions or machines are mixed in this run, see 'sessions'", err=True)
     if record["history"]:
         say(f"\nagainst the earlier run: {record['history']['text']}", err=True)

@@ -2,18 +2,57 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
 import sys
-from typing import BinaryIO
+from typing import BinaryIO, TextIO
 
 import click
 
 from fogproof.errors import InvalidInputError
 from fogproof.text import visible
 
+BAD_INPUT = 2
+"""The exit code for usage, bad input, and no room, memory or permission."""
+
+
+UNREAD = 141
+"""The exit code where nobody reads stdout: 128 + SIGPIPE, as a shell tells it."""
+
+_CODE = "fogproof.code"
+
 
 def say(text: object = "", err: bool = False) -> None:
-    """Print text with its control characters, bidirectional overrides and lone surrogates made visible; new lines stay."""
-    click.echo(visible(str(text)), err=err)
+    """Print text with its control characters, bidirectional overrides and lone surrogates made visible; new lines stay.
+
+    A stdout that takes no more ends a command, but not one that has a folder to write into: that goes on, and `code_of_stdout`
+    tells how it must end. A stderr that takes no more ends nothing.
+    """
+    try:
+        click.echo(visible(str(text)), err=err)
+    except OSError as error:
+        if err:
+            silence(sys.stderr)
+            return
+        context = click.get_current_context(silent=True)
+        if context is None or context.params.get("folder") is None:
+            raise
+        silence(sys.stdout)
+        unread = isinstance(error, BrokenPipeError)
+        context.meta[_CODE] = UNREAD if unread else BAD_INPUT
+        if not unread:
+            say(f"fogproof: cannot write to stdout: {error.strerror or error}", err=True)
+
+
+def code_of_stdout(context: click.Context) -> int:
+    """Return the exit code for a stdout that took no more while the command went on, 0 if all was well."""
+    return int(context.meta.get(_CODE, 0))
+
+
+def silence(stream: TextIO) -> None:
+    """Let what a stream still holds go nowhere, and all that follows: Python would try again at its end, and complain."""
+    with contextlib.suppress(OSError, ValueError, AttributeError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def requests_on_stdin() -> BinaryIO:

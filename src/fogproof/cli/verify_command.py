@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import datetime
 import json
-import math
 import shlex
 import sys
 import time
@@ -16,7 +15,7 @@ from fogproof.checks import fresh_seed
 from fogproof.cli.force import FORCE
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
-from fogproof.errors import InvalidValueError
+from fogproof.cli.values import PROBABILITY, SECONDS
 from fogproof.text import one_line, p_value
 from fogproof.verify import ALPHA, Result, exit_code, record, reproduce, run, select, shares
 
@@ -33,14 +32,18 @@ from fogproof.verify import ALPHA, Result, exit_code, record, reproduce, run, se
     "--seed", type=click.IntRange(min=0), help="Seed of the run; a fresh one is drawn and printed by default."
 )
 @click.option(
-    "--alpha", type=float, default=ALPHA, show_default=True, help="False-alarm probability of the whole catalogue."
+    "--alpha",
+    type=PROBABILITY,
+    default=ALPHA,
+    show_default=True,
+    help="False-alarm probability of the whole catalogue.",
 )
 @click.option(
     "--workers", type=click.IntRange(min=1), default=2, show_default=True, help="Threads; results do not depend on it."
 )
 @click.option("--twins", is_flag=True, help="Run every broken twin as well: the same checks must reject it.")
 @click.option(
-    "--time-limit", type=float, metavar="SECONDS", help="Longest a case may take; one that takes longer is an error."
+    "--time-limit", type=SECONDS, metavar="SECONDS", help="Longest a case may take; one that takes longer is an error."
 )
 @FORCE
 @click.option("--json", "as_json", is_flag=True, help="Print the record of the run as JSON instead of rows.")
@@ -64,10 +67,6 @@ def command(
     \b
     Example:  fogproof verify directions 'mitsuba/hg*' --report build/report
     """
-    if not 0 < alpha < 1:
-        raise InvalidValueError("--alpha", "must lie in (0, 1)", alpha)
-    if time_limit is not None and not 0 < time_limit < math.inf:
-        raise InvalidValueError("--time-limit", "must be > 0 [s]", time_limit)
     chosen = select(cases)
     if folder is not None:
         from fogproof.reports import prepare_folder

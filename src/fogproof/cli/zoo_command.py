@@ -12,7 +12,7 @@ from fogproof.checks import fresh_seed
 from fogproof.cli.force import FORCE
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
-from fogproof.errors import InvalidValueError
+from fogproof.cli.values import PROBABILITY
 
 
 @click.command("zoo")
@@ -28,7 +28,9 @@ from fogproof.errors import InvalidValueError
 @click.option(
     "--samples", type=click.IntRange(min=1000), default=1_000_000, show_default=True, help="Most of one check."
 )
-@click.option("--alpha", type=float, default=1e-6, show_default=True, help="False-alarm probability of one check.")
+@click.option(
+    "--alpha", type=PROBABILITY, default=1e-6, show_default=True, help="False-alarm probability of one check."
+)
 @click.option(
     "--seed", type=click.IntRange(min=0), help="Seed of the run; a fresh one is drawn and printed by default."
 )
@@ -69,8 +71,6 @@ def command(
     from fogproof.zoo.matrix import counts, line, summary
     from fogproof.zoo.running import ZooLog, run_zoo
 
-    if not 0 < alpha < 1:
-        raise InvalidValueError("--alpha", "must lie in (0, 1)", alpha)
     chosen = select(bugs, one_in)
     log, rows = None, []
     if folder is not None:
@@ -99,13 +99,11 @@ def command(
     order = {bug.name: i for i, bug in enumerate(chosen)}
     rows.sort(key=lambda row: order[row.name])
     if folder is not None:
+        from fogproof.reports.files import write_file
         from fogproof.zoo.comparison import page
 
-        (folder / "zoo.md").write_text(
-            page(
-                rows, samples, alpha, {name: len(bugs_of(name)) for name in {bug.folder for bug in chosen}}, len(chosen)
-            )
-        )
+        sizes = {name: len(bugs_of(name)) for name in {bug.folder for bug in chosen}}
+        write_file(folder / "zoo.md", page(rows, samples, alpha, sizes, len(chosen)))
     say(summary(rows), err=True)
     say(f"{len(rows)} of {len(chosen)} run; seed {seed}", err=True)
     return stop.code or int(not all(count.good for count in counts(rows)))

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fogproof.checks.arguments import alpha_of
 from fogproof.checks.statistics.known import Known
 from fogproof.checks.statistics.means import mean_test
 from fogproof.checks.statistics.moments import Moments
@@ -141,6 +142,4 @@ def checked(tolerance: float, alpha: float) -> tuple[float, float]:
     """Return tolerance and alpha, or say what is wrong with them."""
     if not 0 <= tolerance < 1:
         raise InvalidValueError("tolerance", "must lie in [0, 1), relative", tolerance)
-    if not 0 < alpha < 1:
-        raise InvalidValueError("alpha", "must lie in (0, 1)", alpha)
-    return tolerance, alpha
+    return tolerance, alpha_of(alpha)

@@ -224,5 +224,5 @@ def _bet(found: Residuals, channel: int, alpha: float, names: tuple[str, ...]) -
         bets.p_value,
         alpha,
         region=("too bright",),
-        lawless=True,
+        distribution_free=True,
     )

@@ -16,6 +16,7 @@ import numpy as np
 from fogproof.errors import InvalidValueError, TimeLimitError, TooLargeError
 from fogproof.quantities import Quantity
 from fogproof.scene.arrays import Count
+from fogproof.validate import LONGEST
 
 DEEPEST = 64
 """Levels of lists and tables in a request: NumPy has as many axes."""
@@ -30,7 +31,8 @@ class Limits:
     """Bounds on a single request.
 
     values   numbers in one answer
-    seconds  until an answer is given up; inf for no limit, and where the system has no alarm (on Windows, in threads)
+    seconds  until an answer is given up; inf, as all beyond 1e6, for no limit, and where the system has no alarm (on Windows, in
+             threads)
     bytes    length of a line
     """
 
@@ -93,7 +95,7 @@ class _Alarm(BaseException):
 def within(seconds: float) -> Iterator[None]:
     """Raise `TimeLimitError` if the body takes longer; without effect where the system has no alarm."""
     possible = hasattr(signal, "setitimer") and threading.current_thread() is threading.main_thread()
-    if not possible or math.isinf(seconds):
+    if not possible or seconds > LONGEST:
         yield
         return
 

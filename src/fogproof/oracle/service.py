@@ -59,9 +59,9 @@ def _replies(lines: list[bytes | None], rigorous: bool, limits: Limits) -> Itera
 
 
 def _lines(read: Callable[[int], bytes], longest: int) -> Iterator[list[bytes | None]]:
-    """Yield the lines that have arrived, as soon as any has; None for one that is too long."""
+    """Yield the lines that have arrived, as soon as any has; None for one that is too long, before it has come to its end."""
     kept: list[bytes] = []
-    size, first = 0, True
+    size, first, lost = 0, True, False
     while True:
         chunk = read(CHUNK)
         if first:
@@ -69,15 +69,21 @@ def _lines(read: Callable[[int], bytes], longest: int) -> Iterator[list[bytes | 
         *complete, rest = chunk.split(b"\n")
         found: list[bytes | None] = []
         for part in complete if chunk else [b""]:
+            if lost:
+                lost = False
+                continue
             kept.append(part)
             size += len(part)
             line = b"".join(kept) if size <= longest else None
             if line is None or line.strip():
                 found.append(line)
             kept, size = [], 0
+        if not lost:
+            size, kept = size + len(rest), [*kept, rest]
+            if size > longest:
+                found.append(None)
+                kept, size, lost = [], 0, True
         if found:
             yield found
         if not chunk:
             return
-        size += len(rest)
-        kept = [*kept, rest] if size <= longest else []

@@ -44,7 +44,7 @@ class Settings:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class Checked:
     """A verdict, what the program did besides, and what it wrote to stderr."""
 
     verdict: Verdict
@@ -57,7 +57,7 @@ def check_program(
     spec: str | Path | Mapping[str, Any],
     settings: Settings | None = None,
     timeouts: Timeouts | None = None,
-) -> Outcome:
+) -> Checked:
     """Judge a program that speaks the protocol of `docs/pipe.md`; it is ended with its children, whatever happens.
 
     command  its command line; no shell reads it
@@ -77,10 +77,10 @@ def check_program(
     words = command if isinstance(command, str) else shlex.join(command)
     verdict = replace(verdict, reproduce=_command(["--exec", words], origin, settings, verdict.seed))
     notes = tuple(dict.fromkeys(program.notes)) if program else ()
-    return Outcome(verdict, notes, program.said if program else "")
+    return Checked(verdict, notes, program.said if program else "")
 
 
-def check_file(path: str | Path, spec: str | Path | Mapping[str, Any], settings: Settings | None = None) -> Outcome:
+def check_file(path: str | Path, spec: str | Path | Mapping[str, Any], settings: Settings | None = None) -> Checked:
     """Judge the samples or realisations in a file."""
     settings = settings or Settings()
     table, origin = (spec, "spec") if isinstance(spec, Mapping) else (read_table(spec), str(spec))
@@ -89,7 +89,7 @@ def check_file(path: str | Path, spec: str | Path | Mapping[str, Any], settings:
     return replace(outcome, verdict=replace(outcome.verdict, reproduce=reproduce))
 
 
-def _of_file(path: Path, base: Spec, settings: Settings) -> Outcome:
+def _of_file(path: Path, base: Spec, settings: Settings) -> Checked:
     rows, named = read_rows(path, len(base.columns), base.type)
     columns = _columns(path, base, rows.shape, named)
     precision: Precision = base.precision or ("float32" if rows.dtype == np.float32 else "float64")
@@ -99,23 +99,23 @@ def _of_file(path: Path, base: Spec, settings: Settings) -> Outcome:
             "seed": settings.seed,
             **_estimator_options(base, precision),
         }
-        return Outcome(check_estimator(draws_of(rows, columns), expectation_of(base), **options))
+        return Checked(check_estimator(draws_of(rows, columns), expectation_of(base), **options))
     truth = truth_of(base, precision)
     hint = misread(truth.domain, rows, columns)
     if hint:
-        return Outcome(failed(ProgramError(f"the file {hint[0]}", hint[1]), settings))
+        return Checked(failed(ProgramError(f"the file {hint[0]}", hint[1]), settings))
     draw = draw_of(rows, columns, truth.domain)
     if truth.density is None:
         if draw.pdf is None:
             fix = "give a column of densities, or phase, medium or table in the spec"
             raise InvalidInputError(f"{path} has no densities; {fix}", "columns")
         subject = _subject(base, truth, _never, _never, precision)
-        return Outcome(check_ratios(subject, draw, settings.alpha, settings.seed))
+        return Checked(check_ratios(subject, draw, settings.alpha, settings.seed))
     recorded = Recorded(draw)
     subject = _subject(base, truth, recorded.sample, partial(_value, truth), precision, recorded.pilot)
     most = min(settings.samples or base.samples or recorded.tested, truth.most or recorded.tested)
     verdict = check_recorded(recorded, subject, most, settings.resolution, settings.alpha, settings.seed)
-    return Outcome(verdict, truth.notes)
+    return Checked(verdict, truth.notes)
 
 
 def _command(what: Sequence[str], spec: str, settings: Settings, seed: int) -> str:

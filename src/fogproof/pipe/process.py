@@ -17,10 +17,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 
 from fogproof.children import start
-from fogproof.errors import InvalidValueError, UnsupportedError
+from fogproof.errors import UnsupportedError
 from fogproof.pipe.command import cannot_start, words_of
 from fogproof.pipe.faults import BROKEN, BUFFERS, HANGS, SHORT, ProgramError, end_of, quoted
 from fogproof.text import one_line
+from fogproof.validate import time_limit
 
 _KEPT = 2000  # bytes of stderr, at its beginning and at its end
 _CHUNK = 1 << 16
@@ -39,8 +40,7 @@ class Timeouts:
 
     def __post_init__(self) -> None:
         for field in fields(self):
-            if not getattr(self, field.name) > 0:
-                raise InvalidValueError(f"{field.name} timeout", "must be > 0 [s]", getattr(self, field.name))
+            time_limit(f"{field.name} timeout", getattr(self, field.name))
 
 
 class Process:

@@ -16,6 +16,7 @@ from fogproof.checks.pilot import PILOT
 from fogproof.checks.promises import Watch
 from fogproof.checks.sampler import SamplerCheck
 from fogproof.checks.subject import Subject
+from fogproof.checks.verdict import Finding
 from fogproof.contracts import Draw
 from fogproof.errors import InvalidInputError, SubjectError
 
@@ -35,14 +36,15 @@ class Recorded:
         self._at: int | None = None
 
     @property
-    def first(self) -> Draw:
-        """The rows of the pilot."""
-        return self._rows(slice(self.pilot))
-
-    @property
     def tested(self) -> int:
         """How many rows are there to be tested."""
         return len(self._draw.x) - self.pilot
+
+    def broken(self, subject: Subject) -> dict[str, Finding]:
+        """Return what the pilot breaks of what every single sample promises: it is not counted, but it is looked at."""
+        watch = Watch(subject)
+        watch.look(Draw(*(None if part is None else part[: self.pilot] for part in self._draw)))  # type: ignore[arg-type]
+        return {f.check: f for f in watch.findings() if f.outcome == "rejected"}
 
     def begin(self) -> None:
         """From now on every row is handed out once."""
@@ -62,9 +64,6 @@ class Recorded:
             rows = np.arange(self.pilot, self.pilot + n)
         else:
             raise SubjectError(f"there are no {n} samples", "file")  # the same ones twice would look like atoms
-        return self._rows(rows)
-
-    def _rows(self, rows: np.ndarray | slice) -> Draw:
         x, *others = (None if part is None else part[rows] for part in self._draw)
         assert x is not None
         return Draw(x, *others)
@@ -78,17 +77,7 @@ def check_recorded(
     check = replace(check, prepared=replace(check.prepared, calls=None))  # there is nobody to call
     recorded.begin()
     verdict = check.run()
-    kept = tuple(finding for finding in verdict.findings if finding.check != "edge uniforms")
-    return _with_pilot(replace(verdict, findings=kept), recorded, subject)
-
-
-def _with_pilot(verdict: Verdict, recorded: Recorded, subject: Subject) -> Verdict:
-    """Return the verdict with the promises that rows of the pilot break: these are not counted, and must be points all the same."""
-    watch = Watch(subject)
-    watch.look(recorded.first)
-    told = {finding.check for finding in verdict.findings if finding.outcome == "rejected"}
-    broken = {f.check: f for f in watch.findings() if f.outcome == "rejected" and f.check not in told}
-    if not broken:
-        return verdict
-    others = tuple(finding for finding in verdict.findings if finding.check not in broken)
-    return replace(verdict, findings=(*broken.values(), *others), cause=verdict.cause or likely_cause(broken.values()))
+    early = recorded.broken(check.prepared.subject)
+    kept = tuple(early.get(f.check, f) if f.outcome != "rejected" else f for f in verdict.findings)
+    kept = tuple(finding for finding in kept if finding.check != "edge uniforms")
+    return replace(verdict, findings=kept, cause=verdict.cause or likely_cause(kept))

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from fogproof.errors import InvalidInputError, InvalidValueError, shorten
-from fogproof.input_files import read_text
+from fogproof.input_files import parse_json, read_text
 from fogproof.scene.image_scenes import ImageScene
 from fogproof.scene.scenes import Scene
 
@@ -40,8 +40,8 @@ def _table(path: Path) -> dict[str, Any]:
     text = read_text(path, "the scene file")
     if path.suffix == ".json":
         try:
-            table = json.loads(text)
-        except (json.JSONDecodeError, RecursionError) as error:
+            table = parse_json(text)
+        except (ValueError, RecursionError) as error:
             raise InvalidInputError(f"{path} is not valid JSON: {error}", str(path)) from None
         if not isinstance(table, dict):
             raise InvalidInputError(f"{path}: must be a table of keys, got {shorten(table)}", str(path))

@@ -91,7 +91,8 @@ def _as_worker() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent = multiprocessing.parent_process()
     assert parent is not None
-    threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True).start()
+    with contextlib.suppress(RuntimeError):  # where no more threads may be started nothing watches
+        threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True).start()
 
 
 def _end_with(sentinel: int) -> None:
@@ -101,6 +102,9 @@ def _end_with(sentinel: int) -> None:
 
 @contextlib.contextmanager
 def _dask(address: str) -> Iterator[Workers]:
+    host, _, port = address.rpartition(":")
+    if not host or not port.isdigit():
+        raise InvalidValueError("--executor", "must name host and port, as dask://host:port", f"dask://{address}")
     try:
         from distributed import Client
     except ImportError:

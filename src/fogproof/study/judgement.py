@@ -34,13 +34,13 @@ class Judged:
 
     outcome  that of all findings, but for a variance that could not be tested: squares are more skewed than what is squared
     warning  about heavy tails, "" if there is none
-    wants    how many times as many realisations would decide about the mean, as far as can be foreseen; 1 if nothing is open
+    times_as_many  how many times as many realisations would decide about the mean, as far as can be foreseen; 1 if nothing is open
     """
 
     outcome: Outcome
     findings: tuple[Finding, ...]
     warning: str
-    wants: float = 1.0
+    times_as_many: float = 1.0
 
     @property
     def infinite(self) -> bool:
@@ -71,7 +71,7 @@ def judge(cell: Cell, levels: Sequence[Level], variance: Reference | None, alpha
     value, error = float(cell.reference.value), float(cell.reference.error)
     bad = sum(level.bad for level in levels)
     findings: list[Finding] = []
-    warning, wants = "", 1.0
+    warning, times_as_many = "", 1.0
     if bad:
         findings.append(Finding("finite values", "rejected", f"{bad} realisations are not finite", cause="bias"))
     elif not any(len(level.rows) for level in levels):
@@ -95,12 +95,12 @@ def judge(cell: Cell, levels: Sequence[Level], variance: Reference | None, alpha
         if warning and variance is None and "infinite" in warning:
             findings[0] = replace(findings[0], outcome="inconclusive", message=f"{findings[0].message}; {warning}")
         elif findings[0].outcome == "inconclusive":
-            wants = _wanted(data, alpha)
+            times_as_many = _wanted(data, alpha)
     if not all(level.complete for level in levels) or len(levels) < len(cell.counts):
         findings.append(Finding("completeness", "inconclusive", "batches are missing"))
     outcomes = [f.outcome for f in findings if f.outcome == "rejected" or f.check != "variance"]
     outcome: Outcome = next((o for o in ("rejected", "inconclusive") if o in outcomes), "not rejected")
-    return Judged(outcome, tuple(findings), warning, wants)
+    return Judged(outcome, tuple(findings), warning, times_as_many)
 
 
 def _known(cell: Cell, variance: Reference | None) -> Known:
@@ -147,7 +147,7 @@ def inherited(judged: Judged, twin: Judged) -> Judged:
     if twin.outcome == "not rejected" or judged.outcome == "rejected":
         return judged
     finding = Finding("random points", twin.outcome, f"with random points the estimator is {twin.outcome}")
-    return Judged(twin.outcome, (*judged.findings, finding), judged.warning, twin.wants)
+    return Judged(twin.outcome, (*judged.findings, finding), judged.warning, twin.times_as_many)
 
 
 def resolution_of(value: float, error: float, terms: int = 1) -> float:
@@ -178,7 +178,7 @@ def _against_theory(levels: Sequence[Level], variance: Reference | None, alpha: 
     what = "mean squared deviation"
     findings = [mean_test("variance", what, squares, exact, error, alpha, "wrong variance")]
     last, data = levels[-1], pooled(levels[-1].rows)
-    if exact > 0 and len(last.rows) and data.m2 > 0 and excess(data) / last.count < _NEARLY_NORMAL:
+    if exact > 0 and len(last.rows) > 1 and data.m2 > 0 and excess(data) / last.count < _NEARLY_NORMAL:
         findings.append(_scatter(last, exact, alpha))
     return findings
 

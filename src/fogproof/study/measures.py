@@ -72,7 +72,7 @@ def measure(cell: Cell, levels: Sequence[Level], alpha: float, twin: Measured | 
         "reason": cell.method.bias,
         "outcome": judged.outcome,
         "warning": judged.warning,
-        "wants": judged.wants,
+        "times_as_many": judged.times_as_many,
         "findings": judged.findings,
         "moments": _moments(data),
         "bias": None if bias is None else asdict(bias),
@@ -135,7 +135,8 @@ def _bias(cell: Cell, levels: Sequence[Level], data: Moments, error: float) -> E
     else:
         means = levels[-1].rows[:, 1]
         off = float(means.mean()) - float(cell.reference.value)
-        reach = Z * float(means.std(ddof=1)) / math.sqrt(len(means)) if cell.method.axis == "samples" else 0.0
+        scatter = float(means.std(ddof=1)) if len(means) > 1 else math.nan  # one alone says nothing of it
+        reach = Z * scatter / math.sqrt(len(means)) if cell.method.axis == "samples" else 0.0
     return Estimate(off, off - reach - error, off + reach + error)
 
 

@@ -35,7 +35,7 @@ def ranked(scene: Sequence[Measured]) -> dict[str, Any]:
         "best": None if first is None else first.cell.name,
         "best_unbiased": unbiased[0].cell.name if unbiased else None,
         "ranking": [m.cell.name for m in order],
-        "out": [m.cell.name for m in scene if not m.reaches],
+        "unranked": [m.cell.name for m in scene if not m.reaches],
         "text": " ".join(_sentences(scene)),
     }
 

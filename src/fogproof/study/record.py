@@ -13,7 +13,7 @@ from typing import Any
 
 from fogproof.checks.json_values import jsonable
 from fogproof.errors import InvalidInputError, shorten
-from fogproof.input_files import read_text
+from fogproof.input_files import parse_json, read_text
 from fogproof.plan import plan
 from fogproof.scene import Scattering, Scene
 from fogproof.study.aggregate import levels_of
@@ -100,7 +100,7 @@ def make_record(
             "scenes": scenes,
             "failures": failures,
             "sessions": sessions,
-            "mixed": len({json.dumps(session["environment"], sort_keys=True) for session in sessions}) > 1,
+            "mixed_environments": len({json.dumps(session["environment"], sort_keys=True) for session in sessions}) > 1,
             "history": None,
         }
     )
@@ -123,11 +123,13 @@ def exit_code(measured: Iterable[Measured], failed: bool, missing: bool) -> int:
 
 def advice(study: Study, measured: Sequence[Measured]) -> str:
     """Return which key of the study to raise for what is not judged unbiased yet, "" if nothing is open."""
-    waiting = [m for m in measured if m.status == "inconclusive" and m.judged.wants > 1 and m.cell.points == "random"]
+    waiting = [
+        m for m in measured if m.status == "inconclusive" and m.judged.times_as_many > 1 and m.cell.points == "random"
+    ]
     if not waiting:
         return ""
     names = ", ".join(dict.fromkeys(f"{m.cell.scene.name} / {m.cell.name}" for m in waiting))
-    times = math.ceil(max(m.judged.wants for m in waiting))
+    times = math.ceil(max(m.judged.times_as_many for m in waiting))
     return (
         f"Not judged unbiased yet, too few samples for so skewed values: {names}. Raise `replicates` to {times * study.replicates}"
         f" at least, or the last of `samples` to {times * study.samples[-1]}; what is drawn already is kept."
@@ -188,7 +190,7 @@ def read_results(path: Path) -> dict[str, Any]:
     """Return the record of a finished study, from its folder or file."""
     file = path / "results.json" if path.is_dir() else path
     try:
-        record = json.loads(read_text(file, "the record"))
+        record = parse_json(read_text(file, "the record"))
     except (ValueError, RecursionError) as error:
         raise InvalidInputError(f"cannot read {file}: it is not JSON ({error})", str(file)) from None
     if not isinstance(record, dict) or record.get("schema") != SCHEMA or record.get("kind") != "study":

@@ -20,7 +20,7 @@ ATTEMPTS = 3
 AHEAD = 2
 """Batches a worker has waiting, beside the one it draws."""
 
-Draw = Callable[[str, str, Batch, float], BatchResult]
+DrawBatch = Callable[[str, str, Batch, float], BatchResult]
 Advance = Callable[[Batch, "BatchResult | None"], None]
 
 
@@ -49,7 +49,7 @@ def draw_missing(
     store: Store,
     pool: Workers,
     advance: Advance = lambda batch, result: None,
-    draw: Draw = run_batch,
+    draw: DrawBatch = run_batch,
 ) -> None:
     """Draw every batch that is not in the store yet, in the order given.
 
@@ -71,7 +71,7 @@ def draw_missing(
         raise
 
 
-def _hand_out(study: Study, cells: Sequence[Cell], batch: Batch, pool: Workers, work: _Work, draw: Draw) -> None:
+def _hand_out(study: Study, cells: Sequence[Cell], batch: Batch, pool: Workers, work: _Work, draw: DrawBatch) -> None:
     reference = float(cells[batch.cell].reference.value)
     try:
         future = pool.executor.submit(draw, study.text, study.folder, batch, reference)

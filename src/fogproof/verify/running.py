@@ -8,7 +8,7 @@ import os
 import sys
 import time
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -22,6 +22,8 @@ from fogproof.verify.selection import shares, whole
 
 _PACKAGES = {"mitsuba": ("Mitsuba 3", "mitsuba"), "miepython": ("miepython", "mie")}
 """Name and extra of each module that a case may need."""
+_LOOK = 0.1
+"""Seconds between looks for processes to be ended, when a run is given up."""
 _TWIN_SAMPLES = 20_000
 """A planted error is gross: most twins are rejected by so few samples. Those that are not get all that their case has."""
 
@@ -46,8 +48,8 @@ def run(
     parts = shares(cases, alpha)
     totals = {origin: sum(case.weight for case in whole(origin)) for origin in parts}
     pool = ThreadPoolExecutor(max_workers=workers)
+    jobs: list[Future[Result]] = []
     try:
-        jobs = []
         for case in cases:
             share = parts[case.origin] * case.weight / totals[case.origin]
             alone = case.origin or time_limit is not None
@@ -57,7 +59,11 @@ def run(
             yield done.result()
     finally:
         pool.shutdown(wait=False, cancel_futures=True)
-        end_isolated()
+        while True:  # a process that was about to start is there only now
+            end_isolated()
+            if all(job.done() for job in jobs):
+                break
+            time.sleep(_LOOK)
         pool.shutdown(wait=True)
 
 

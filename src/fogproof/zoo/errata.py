@@ -116,12 +116,12 @@ def bugs() -> list[Bug]:
         ),
         sampler(
             "E3 Schlick with k above 1", source, _ahead, partial(_schlick, 1.55 * 0.95 - 0.55 * 0.95**3),
-            ("claimed hole", "negative", "not a number", "normalisation", "wrong measure"),
+            ("claimed hole", "negative pdf", "not a number", "normalisation", "wrong measure"),
         ),
         sampler(
             "E3 Schlick has not the mean g", source,
             partial(_schlick_sample, 1.55 * 0.8 - 0.55 * 0.8**3), partial(_schlick, 1.55 * 0.8 - 0.55 * 0.8**3),
-            ("sign convention", "another parameter", "another law", "wrong formula"),
+            ("wrong mean cosine", "sign convention", "another parameter", "another law", "wrong formula"),
             options={"dimensions": 2, "axis": (0.0, 0.0, 1.0), "mean_cosine": 0.8},
         ),
         estimator(

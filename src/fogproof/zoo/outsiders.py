@@ -14,7 +14,7 @@ _LAW = ("shape", "another law", "another parameter", "wrong scale", "wrong power
 _MISSING = ("skipped band", "skipped region", "missing tail", "never drawn", "few entries", "claimed hole")
 CAUSES = {
     "pdf x .98": ("normalisation", "wrong measure"),
-    "shifted": (*_LAW, "wrong probability of an atom"),
+    "shifted": (*_LAW, "shifted", "wrong probability of an atom"),
     "a piece of mass .02 is missing": _MISSING,
 }
 """Error -> causes that are right."""

@@ -14,6 +14,8 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from fogproof.errors import InvalidInputError, NotInstalledError
+from fogproof.input_files import read_text
+from fogproof.journal import add_line, whole_lines
 from fogproof.verify import case_seed
 from fogproof.zoo.bug import Bug
 
@@ -145,16 +147,16 @@ class ZooLog:
 
     def read(self) -> list[ZooRow]:
         """Return the rows of earlier runs."""
-        if not self.path.exists():
-            self.path.parent.mkdir(parents=True, exist_ok=True)
-            self.path.write_text(json.dumps(self.settings) + "\n")
+        lines = whole_lines(read_text(self.path, "the rows")) if self.path.exists() else []
+        if not lines:
+            add_line(self.path, self.settings)
             return []
         try:
-            first, *rest = [json.loads(line) for line in self.path.read_text().splitlines()]
+            first, *rest = map(json.loads, lines)
             rows = [ZooRow(**{**row, "causes": tuple(row["causes"]), "checks": tuple(row["checks"])}) for row in rest]
             if strange := [row.status for row in rows if row.status not in get_args(Status)]:
                 raise ValueError(f"{strange[0]!r} is none of {', '.join(get_args(Status))}")
-        except (ValueError, TypeError, KeyError) as error:
+        except (ValueError, TypeError, KeyError, RecursionError) as error:
             raise InvalidInputError(f"{self.path} holds no rows of a zoo: {error}; delete it", str(self.path)) from None
         if first != self.settings:
             what = f"{self.path} is of other settings, {first}; choose another folder, or delete it"
@@ -163,5 +165,4 @@ class ZooLog:
 
     def add(self, row: ZooRow) -> None:
         """Write one row."""
-        with self.path.open("a") as file:
-            file.write(json.dumps(asdict(row)) + "\n")
+        add_line(self.path, asdict(row))

@@ -112,7 +112,8 @@ def lobes(count: int, kappa: float) -> Outsider:
     def pdf(x: np.ndarray) -> np.ndarray:
         total = np.zeros(len(x))
         for row in rows:
-            total += np.exp(-kappa * ((x - row[2]) ** 2).sum(axis=1) / 2)
+            away = x - row[2]
+            total += np.exp(-kappa * np.einsum("ni,ni->n", away, away) / 2)
         return total * kappa / (_TURN * -np.expm1(-2 * kappa)) / count
 
     return Outsider(sample, pdf, UnitSphere(), 3)

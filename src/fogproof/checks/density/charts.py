@@ -139,6 +139,11 @@ def _angle(versine: np.ndarray) -> np.ndarray:
     return 2 * np.arcsin(np.sqrt(np.clip(0.5 * versine, 0, 1)))
 
 
+def _azimuth() -> Axis:
+    """Return the angle that runs round; people may count it from 0 or from -pi."""
+    return Axis("phi", -np.pi, np.pi, False, hidden=lambda phi: np.arctan2(np.sin(phi), np.cos(phi)))
+
+
 def _sphere(highest: float, axis: np.ndarray) -> Chart:
     rows = frame(axis)
     turned = not np.array_equal(rows, np.eye(3))
@@ -156,7 +161,7 @@ def _sphere(highest: float, axis: np.ndarray) -> Chart:
         return np.where(z < 0, 2 - versine, versine), np.arctan2(y, x)
 
     mu = Axis("mu", 0.0, highest, True, _versine, _angle, np.cos, lambda mu: np.arccos(np.clip(mu, -1, 1)))
-    axes = (mu, Axis("phi", -np.pi, np.pi, False))
+    axes = (mu, _azimuth())
     return Chart(axes, to_point, count, lambda c: np.sin(c[:, 0]))
 
 
@@ -168,7 +173,7 @@ def _disk() -> Chart:
         x, y = np.ascontiguousarray(points.T)
         return x * x + y * y, np.arctan2(y, x)
 
-    axes = (Axis("r", 0.0, 1.0, True, np.square, np.sqrt), Axis("phi", -np.pi, np.pi, False))
+    axes = (Axis("r", 0.0, 1.0, True, np.square, np.sqrt), _azimuth())
     return Chart(axes, to_point, count, lambda c: c[:, 0])
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -49,7 +50,7 @@ class Marginal:
     at: Callable[[np.ndarray], np.ndarray]
     whole: bool = False
 
-    @property
+    @cached_property
     def mass(self) -> np.ndarray:
         """The probability of each cell, (m,)."""
         return np.diff(self.cdf)
@@ -99,9 +100,15 @@ class GridPlane:
 
     def coarse(self, cells: list[np.ndarray]) -> np.ndarray:
         """Return (n,) the coarse cell, row by row, of points in the given fine cells (n,) of the two axes."""
+        first, second = (rows[cell] for rows, cell in zip(self._coarse_rows, cells, strict=True))
+        return np.asarray(first + second)
+
+    @cached_property
+    def _coarse_rows(self) -> tuple[np.ndarray, np.ndarray]:
+        """What the fine cells of the two axes add to the number of a coarse cell, (m,) each."""
         side, size = len(self.mass), self.size
-        first, second = (rows[cell] * side // size for rows, cell in zip(self.rows, cells, strict=True))
-        return np.asarray(first * side + second)
+        first, second = (rows * side // size for rows in self.rows)
+        return first * side, second
 
     def blur(self, size: int) -> np.ndarray:
         """Return (size, size) the probability that rounding moves into or out of each of as many cells."""

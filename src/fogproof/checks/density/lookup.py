@@ -7,6 +7,7 @@ densities with peaks thousands of times narrower than the domain are no slower (
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -52,6 +53,11 @@ class Lookup:
         small = [table.astype(np.int32) for table in (base, first)]  # they fit into the cache
         return Lookup(edges, following, scale, buckets, small[0], fine.astype(np.float32), small[1], most, crowded)
 
+    @cached_property
+    def even(self) -> bool:
+        """Whether no bucket has a grid of its own: each is then its own place."""
+        return bool(np.all(self.fine == 1))
+
     def __call__(self, t: np.ndarray) -> np.ndarray:
         """Return (n,) the cell of each t: the last i with edges[i] <= t, clipped to the cells that there are."""
         found = np.empty(len(t), dtype=np.intp)
@@ -62,7 +68,7 @@ class Lookup:
     def _find(self, t: np.ndarray) -> np.ndarray:
         place = (np.clip(t, self.edges[0], self.edges[-1]) - self.edges[0]) * self.scale
         coarse = np.minimum(place.astype(np.intp), self.buckets - 1)
-        bucket = self.base.take(coarse) + _sub(place, coarse, self.fine)
+        bucket = coarse if self.even else self.base.take(coarse) + _sub(place, coarse, self.fine)
         index = self.first.take(bucket)
         for _ in range(self.most):
             index += t >= self.following.take(index)

@@ -8,12 +8,14 @@ from fogproof.checks.verdict import Finding
 
 CAUSES = (
     "writes into its uniforms",
+    "writes into its points",
     "hidden state",
     "ignores its uniforms",
     "order of the rows",
     "size of the call",
     "not a number",
     "outside the domain",
+    "negative pdf",
     "claimed hole",
     "wrong measure",
     "normalisation",
@@ -34,6 +36,7 @@ CAUSES = (
     "dependent samples",
     "atom",
     "pdf outside the support",
+    "wrong mean cosine",
     "missing tail",
     "skipped band",
     "shape",
@@ -47,6 +50,12 @@ CAUSES = (
 
 
 def likely_cause(findings: Iterable[Finding]) -> str:
-    """Return the most telling cause among the rejected findings, "" if nothing was rejected."""
-    named = {f.cause for f in findings if f.outcome == "rejected" and f.cause}
+    """Return the most telling cause among the rejected findings, "" if nothing was rejected.
+
+    A full place is an atom only if points come back there: what looks for repeated ones has the last word.
+    """
+    found = list(findings)
+    named = {f.cause for f in found if f.outcome == "rejected" and f.cause}
+    if "atom" in named and any(f.check == "repeated points" and f.outcome == "not rejected" for f in found):
+        named = named - {"atom"} | {"shape"}
     return min(named, key=CAUSES.index, default="")

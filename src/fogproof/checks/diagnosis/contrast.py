@@ -25,6 +25,7 @@ _ANYWHERE = 0.2  # share of the known law that is the domain's own
 _BACKGROUND = 1e-4  # of the known law is added to every density: one stray point refutes none
 _CELLS = 256
 _PER_CELL = 64  # points in a cell, at least
+_THIN = 16  # every so manyth point tells the constant well enough to begin with
 
 
 @dataclass(frozen=True)
@@ -87,28 +88,46 @@ class Contrast:
         keep = np.concatenate([np.arange(n), len(self.x) + np.linspace(0, len(self.z) - 1, n).astype(int)])
         return Contrast(self.law, self.tree, self.x[:n], self.z[keep[n:] - len(self.x)], self.q[keep], self.cell[keep])
 
+    def likelihood(self, s: np.ndarray) -> float:
+        """Return the logarithm of the likelihood of the labels under a density with values s (n + m,), samples first."""
+        return self._explained(s)[0]
+
     def fit(self, s: np.ndarray) -> Fit:
         """Return how well a density with values s (n + m,) at all points, samples first, explains the labels."""
-        n = len(self.x)
-        ratio = np.where((s > 0) & np.isfinite(s), s, 0.0) / self.q  # a mixture of less than nothing gains nothing
-        log_c = 0.0
-        for _ in range(60):
-            w = np.exp(log_c) * ratio + _BACKGROUND
-            w /= 1 + w
-            slope = float(np.sum(w * (1 - w)))
-            step = float(np.clip((n - w.sum()) / max(slope, 1e-9), -2, 2))
-            log_c += step
-            if abs(step) < 1e-6:
-                break
-        odds = np.exp(log_c) * ratio + _BACKGROUND
+        likelihood, log_c, odds = self._explained(s)
         w = odds / (1 + odds)
-        likelihood = float(np.sum(np.log(w[:n])) - np.sum(np.log1p(odds[n:])))
         label = np.zeros(len(w))
-        label[:n] = 1.0
+        label[: len(self.x)] = 1.0
         cells = int(self.cell.max()) + 1
         residual, variance = (np.bincount(self.cell, v, cells) for v in (label - w, w * (1 - w)))
         left = float(np.sum(residual**2 / (variance + 1.0))) - cells
         return Fit(likelihood, float(np.exp(log_c)), left, cells)
+
+    def _explained(self, s: np.ndarray) -> tuple[float, float, np.ndarray]:
+        """Return the likelihood of a density, the logarithm of its best constant, and the odds of each point to be a sample."""
+        n = len(self.x)
+        ratio = np.where((s > 0) & np.isfinite(s), s, 0.0) / self.q  # a mixture of less than nothing gains nothing
+        few = ratio[np.r_[0:n:_THIN, n : len(ratio) : _THIN]]
+        start, settled = _best_constant(few, -(-n // _THIN), 0.0)
+        log_c, _ = _best_constant(ratio, n, start if settled else 0.0)
+        odds = np.exp(log_c) * ratio + _BACKGROUND
+        return float(np.sum(np.log(odds[:n] / (1 + odds[:n]))) - np.sum(np.log1p(odds[n:]))), log_c, odds
+
+
+def _best_constant(ratio: np.ndarray, n: int, log_c: float) -> tuple[float, bool]:
+    """Return the logarithm of the factor of `ratio` with which n points are expected to be samples, and whether there is one.
+
+    By Newton's method, from log_c. Where the density is 0 at too many points, there is none.
+    """
+    for _ in range(60):
+        w = np.exp(log_c) * ratio + _BACKGROUND
+        w /= 1 + w
+        total = float(w.sum())
+        step = float(np.clip((n - total) / max(total - float(w @ w), 1e-9), -2, 2))
+        log_c += step
+        if abs(step) < 1e-6:
+            return log_c, True
+    return log_c, False
 
 
 def good_points(subject: Subject, rng: np.random.Generator, n: int) -> np.ndarray:
@@ -128,7 +147,9 @@ def claimed(subject: Subject) -> Density:
     def density(x: np.ndarray) -> np.ndarray:
         within = in_domain(subject.domain, x, 64 * subject.roundoff)
         p = np.zeros(len(x))
-        if within.any():
+        if within.all():  # nothing to pick out
+            p = subject.density(x)
+        elif within.any():
             p[within] = subject.density(x[within])
         return np.where(np.isfinite(p), p, 0.0)
 

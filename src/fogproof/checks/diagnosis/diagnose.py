@@ -28,7 +28,8 @@ _TRIED = 12  # of them that are fitted closer, on as many samples as show the mi
 _TELLING, _MOST = 200.0, 1 << 16  # chi-square of the misfit on those samples, and most of them
 _KEPT = 3  # of those that are fitted on all samples
 _STANDS_OUT = 25.0  # of likelihood that a hypothesis gains, where cells alone do not show the misfit
-_EXPLAINS = 0.5  # of the misfit: a hypothesis that explains less is not told
+_CHANCE = 5.0  # standard errors that chance makes
+_EXPLAINS = 0.9  # of the misfit: a hypothesis that explains less is not told
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,8 @@ def diagnosed(subject: Subject, findings: Sequence[Finding], samples: int, seed:
     """
     cause = likely_cause(findings)
     statistical = any(f.outcome == "rejected" and f.p_value is not None and f.cause in _STATISTICAL for f in findings)
+    if cause == "negative pdf":
+        return cause, _exponential(subject, samples, seed)
     if cause in _CONSTANT | _STATISTICAL or (cause in _SYMPTOMS and statistical):
         integral = next((f for f in findings if f.check == "normalisation" and f.outcome == "rejected"), None)
         try:
@@ -66,8 +69,24 @@ def diagnosed(subject: Subject, findings: Sequence[Finding], samples: int, seed:
         ):  # the user's density is asked at points that no sampler gave: a verdict is worth more than its cause
             return cause, ""
         if best is not None:
-            return best.hypothesis.cause, best.words
+            return best.hypothesis.caused(best.value, best.error), best.words
     return cause, ""
+
+
+def _exponential(subject: Subject, samples: int, seed: int) -> str:
+    """Return in words that a pdf is the logarithm of one, if its exponential integrates to 1; "" if it does not."""
+    try:
+        with np.errstate(all="ignore"):
+            contrast = Contrast.of(subject, min(_SIZES[0], samples), batch_generator(seed, "diagnosis", 0, _SIZES[0]))
+            if contrast is None:
+                return ""
+            ratio = np.exp(subject.density(contrast.z)) / contrast.q[len(contrast.x) :]
+    except Exception:  # as above
+        return ""
+    integral, error = float(ratio.mean()), float(ratio.std()) / math.sqrt(len(ratio))
+    if not abs(integral - 1) < _CHANCE * error + 1e-3:
+        return ""
+    return f"exp(pdf) integrates to {integral:.4f} +- {error:.1g}: it is the logarithm of a pdf"
 
 
 def _setting(subject: Subject, n: int, seed: int) -> Setting | None:
@@ -150,7 +169,7 @@ def _best(setting: Setting, base: Fit, hypotheses: list[Hypothesis]) -> Explaine
 
 def _likelihood(setting: Setting, hypothesis: Hypothesis, value: float) -> float:
     points = setting.contrast.points
-    likelihood = setting.contrast.fit(hypothesis.density(setting, value)(points)).likelihood
+    likelihood = setting.contrast.likelihood(hypothesis.density(setting, value)(points))
     return likelihood if math.isfinite(likelihood) else -math.inf
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import permutations
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting, known_numb
 
 _MIRROR = np.array([1.0, 1.0, -1.0])
 _ALONG = 0.03  # from a coordinate axis: such a lobe is meant to be about it
+_PER_CELL = 8  # samples in a cell, seen and expected, that tell a density
 _LEAN = 0.03  # mean length of directions that have a direction
 
 
@@ -40,11 +42,7 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
     yield Hypothesis(
         "missing Jacobian", "these samples have a sine of theta too many", lambda s, _: lambda x: s.p(x) * _sine(x)
     )
-    yield Hypothesis(
-        "normalised cube",
-        "these samples are points of a cube, normalised without rejection",
-        lambda s, _: lambda x: s.p(x) / np.abs(x).max(axis=1) ** 3,
-    )
+    yield from _flat(setting)
     yield from _frames(setting)
     yield Hypothesis(
         "wrong power",
@@ -62,17 +60,59 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
     yield Hypothesis(
         "stretched",
         "these samples fit the pdf with x and y stretched by {value}",
-        lambda s, a: s.moved(lambda x: _unit(x * (1 / a, 1 / a, 1.0))),
+        lambda s, a: s.moved(lambda x: _unit(x * (1 / a, 1 / a, 1.0)), _squeezed(1 / a)),
         (0.25, 0.5, 0.7, 1.4, 2.0, 4.0),
     )
     yield Hypothesis(
         "missing square root",
         "these samples fit the pdf with the cosine raised to the power {value}",
-        lambda s, a: s.moved(_cosine_to(1 / a)),
+        lambda s, a: s.moved(_cosine_to(1 / a), lambda x: np.abs(x[:, 2]) ** (1 / a - 1) / a),
         (0.5, 0.7, 1.5, 2.0, 3.0),
         known_number({2.0: "a square root of the cosine is missing", 0.5: "a square root too many"}),
     )
     yield from _lobes(setting)
+
+
+def _flat(setting: Setting) -> Iterator[Hypothesis]:
+    """Yield that points of a cube, or of one plane, are normalised as if that kept areas.
+
+    Seen from its origin, a plane's area of unit distance and normal n fills the solid angle (x . n)^3. The normal is not known: in
+    cells, samples over what the claim expects, to the power -1/3, are a linear function of x, of which it is the gradient.
+    """
+    x = setting.contrast.x
+    if len(np.unique(3 * (x.max(axis=1) == np.abs(x).max(axis=1)) + np.abs(x).argmax(axis=1))) > 3:
+        yield Hypothesis(
+            "normalised cube",
+            "these samples are points of a cube, normalised without rejection",
+            lambda s, _: lambda x: s.p(x) / np.abs(x).max(axis=1) ** 3,
+        )
+    normal = _normal(setting)
+    if normal is None or np.any(x @ normal <= 0):
+        return
+    to = ", ".join(f"{c:.3f}" for c in normal)
+    words = f"these samples are even on the area of a plane of normal ({to}) where the pdf means solid angle"
+    words += ": the cosine over the squared distance is missing"
+    yield Hypothesis(
+        "missing Jacobian", words, lambda s, _: lambda x: s.p(x) / np.maximum(x @ normal, 1e-9) ** 3, fitted=2
+    )
+
+
+def _normal(setting: Setting) -> np.ndarray | None:
+    """Return the normal of the plane that the samples would be even on, None if no plane is seen."""
+    contrast = setting.contrast
+    n, cells = len(contrast.x), int(contrast.cell.max()) + 1
+    weight = setting.p(contrast.points)[n:] / contrast.q[n:]
+    seen = np.bincount(contrast.cell[:n], minlength=cells)
+    expected = np.bincount(contrast.cell[n:], weight, cells) * n / max(float(weight.sum()), 1e-300)
+    full = (seen >= _PER_CELL) & (expected >= _PER_CELL)
+    if np.count_nonzero(full) < 2 * _PER_CELL:
+        return None
+    middle = np.stack(
+        [np.bincount(contrast.cell[n:], weight * contrast.z[:, axis], cells) for axis in range(3)], axis=1
+    )
+    places = middle[full] / np.bincount(contrast.cell[n:], weight, cells)[full, None]
+    gradient = np.linalg.lstsq(places, (seen[full] / expected[full]) ** (-1 / 3), rcond=None)[0]
+    return np.asarray(gradient / max(float(np.linalg.norm(gradient)), 1e-300))
 
 
 def _everywhere(x: np.ndarray) -> np.ndarray:
@@ -85,6 +125,11 @@ def _sine(x: np.ndarray) -> np.ndarray:
 
 def _unit(x: np.ndarray) -> np.ndarray:
     return np.asarray(x / np.sqrt(np.sum(x * x, axis=1, keepdims=True)))
+
+
+def _squeezed(factor: float) -> Density:
+    """Return the solid angle that x times (factor, factor, 1) fills, per solid angle at x: its determinant over its length^3."""
+    return lambda x: np.asarray(factor**2 / np.sum((x * (factor, factor, 1.0)) ** 2, axis=1) ** 1.5)
 
 
 def _cosine_to(power: float) -> Callable[[np.ndarray], np.ndarray]:
@@ -155,17 +200,17 @@ def _lobes(setting: Setting) -> Iterator[Hypothesis]:
     )
 
 
-def henyey_greenstein(mu: np.ndarray, g: float) -> np.ndarray:
+def henyey_greenstein(mu: np.ndarray, g: float | np.ndarray) -> np.ndarray:
     """Return the law of Henyey & Greenstein (1941), up to a constant factor that does not depend on mu."""
     return np.asarray((1 - g * g) / np.maximum(1 + g * g - 2 * g * mu, 1e-12) ** 1.5)
 
 
-def schlick(mu: np.ndarray, k: float) -> np.ndarray:
+def schlick(mu: np.ndarray, k: float | np.ndarray) -> np.ndarray:
     """Return the law of Schlick (1993)."""
     return np.asarray((1 - k * k) / np.maximum(1 - k * mu, 1e-9) ** 2)
 
 
-def _is_lobe(setting: Setting, axis: np.ndarray, length: float, f: Callable[[np.ndarray, float], np.ndarray]) -> bool:
+def _is_lobe(setting: Setting, axis: np.ndarray, length: float, f: Callable[[Any, Any], np.ndarray]) -> bool:
     """Return whether the claim itself is such a lobe: its ratio to one with its own width is a constant."""
     x = setting.contrast.x[:512]
     p, mu = setting.p(x), x @ axis
@@ -174,7 +219,7 @@ def _is_lobe(setting: Setting, axis: np.ndarray, length: float, f: Callable[[np.
     ends = np.argmax(mu), np.argmin(mu)
     target = np.log(p[ends[0]] / p[ends[1]])
     values = np.linspace(-0.999, 0.999, 4001)
-    own = np.array([np.log(f(mu[[ends[0]]], v)[0] / f(mu[[ends[1]]], v)[0]) for v in values])
+    own = np.log(f(mu[ends[0]], values) / f(mu[ends[1]], values))
     best = values[int(np.argmin(np.abs(own - target)))]
     ratio = np.log(p) - np.log(f(mu, best))
     return bool(np.std(ratio) < 0.02)

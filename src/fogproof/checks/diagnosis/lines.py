@@ -35,21 +35,36 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
     spread = float(np.subtract(*np.quantile(x, [0.75, 0.25]))) or 1.0
     origin = domain.a if isinstance(domain, (HalfLine, Interval)) else 0.0
     if isinstance(domain, Interval):
-        length = domain.b - domain.a
-        yield Hypothesis("uniform law", "these samples are uniform", lambda s, _: lambda x: np.ones(len(x)))
-        yield Hypothesis(
-            "sign convention",
-            "these samples fit the pdf with its axis turned round",
-            lambda s, _: lambda x: s.p(domain.a + domain.b - x),
-        )
-        yield Hypothesis(
-            "shifted",
-            "these samples fit the pdf shifted round by {value}",
-            lambda s, d: lambda x: s.p(domain.a + (x - d - domain.a) % length),
-            tuple(length * f for f in (-0.25, -0.1, -0.05, -0.02, -0.01, 0.01, 0.02, 0.05, 0.1, 0.25)),
-        )
+        yield from _turned_or_shifted_round(domain)
     else:
         yield Hypothesis("sign convention", "these samples fit the pdf of -x", lambda s, _: lambda x: s.p(-x))
+    yield from _of_another_scale(origin)
+    yield Hypothesis(
+        "shifted",
+        "these samples fit the pdf shifted by {value}",
+        lambda s, d: lambda x: s.p(x - d),
+        tuple(spread * f for f in (-3.0, -1.0, -0.3, -0.1, 0.1, 0.3, 1.0, 3.0)),
+    )
+    yield from _of_another_measure(origin)
+
+
+def _turned_or_shifted_round(domain: Interval) -> Iterator[Hypothesis]:
+    length = domain.b - domain.a
+    yield Hypothesis("uniform law", "these samples are uniform", lambda s, _: lambda x: np.ones(len(x)))
+    yield Hypothesis(
+        "sign convention",
+        "these samples fit the pdf with its axis turned round",
+        lambda s, _: lambda x: s.p(domain.a + domain.b - x),
+    )
+    yield Hypothesis(
+        "shifted",
+        "these samples fit the pdf shifted round by {value}",
+        lambda s, d: lambda x: s.p(domain.a + (x - d - domain.a) % length),
+        tuple(length * f for f in (-0.25, -0.1, -0.05, -0.02, -0.01, 0.01, 0.02, 0.05, 0.1, 0.25)),
+    )
+
+
+def _of_another_scale(origin: float) -> Iterator[Hypothesis]:
     yield Hypothesis(
         "wrong scale",
         "these samples fit the pdf of an exponent {value} times as large",
@@ -64,18 +79,16 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
         _SCALES,
         _FACTORS,
     )
-    yield Hypothesis(
-        "shifted",
-        "these samples fit the pdf shifted by {value}",
-        lambda s, d: lambda x: s.p(x - d),
-        tuple(spread * f for f in (-3.0, -1.0, -0.3, -0.1, 0.1, 0.3, 1.0, 3.0)),
-    )
+
+
+def _of_another_measure(origin: float) -> Iterator[Hypothesis]:
     yield Hypothesis(
         "missing Jacobian",
         "these samples fit the pdf times a power of x, {value}",
         lambda s, a: lambda x: s.p(x) * np.maximum(np.abs(x - origin), 1e-12) ** a,
         _POWERS,
         known_number({-1.0: "a factor x is missing", 1.0: "a factor x too many", -2.0: "a factor x^2 is missing"}),
+        otherwise="wrong power",
     )
     if origin != 0.0:
         yield Hypothesis(

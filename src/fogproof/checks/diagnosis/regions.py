@@ -41,6 +41,7 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
                 -2.0: "a factor r^2 is missing",
             }
         ),
+        otherwise="wrong power",
     )
 
 
@@ -68,4 +69,5 @@ def _along(axis: int, low: float, high: float) -> Iterator[Hypothesis]:
         f"these samples fit the pdf times a power of coordinate {axis}, {{value}}",
         lambda s, a: lambda x: s.p(x) * np.maximum(np.abs(x[:, axis]), 1e-12) ** a,
         (-1.5, -1.0, -0.5, 0.5, 1.0, 1.5),
+        otherwise="wrong power",
     )

@@ -100,7 +100,8 @@ def evenness_of_calls(name: str, record: Succession, alpha: float) -> Finding | 
         return None
     labels = tuple(f"channel {c}" for c in range(len(record.edges))) if len(record.edges) > 1 else ("the values",)
     # What is promised of an estimator is its mean; the smallest share of stratification that is seen is no promise about that.
-    return replace(evenness_test(name, labels, np.stack(record.counts), alpha), resolution=None)
+    meant = "return the mean of each such set of points as one realisation"
+    return replace(evenness_test(name, labels, np.stack(record.counts), alpha, meant), resolution=None)
 
 
 def _nearly_normal(data: Moments, n: int) -> bool:
@@ -157,4 +158,4 @@ def repeated_stretches(name: str, record: Succession) -> Finding | None:
     if repeats == 0:
         return Finding(name, "not rejected", f"no two of {windows} stretches of {WINDOW} realisations are equal")
     message = f"{repeats} of {windows} stretches of {WINDOW} realisations occurred before: a stream that starts again"
-    return Finding(name, "rejected", message, effect=repeats / windows, cause="correlation")
+    return Finding(name, "rejected", message, effect=repeats / windows, cause="repeated samples")

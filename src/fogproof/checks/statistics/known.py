@@ -48,3 +48,41 @@ class Known:
 
 
 NOTHING = Known()
+
+
+@dataclass(frozen=True)
+class Declarable:
+    """The arguments of a check by which its caller may declare more about one mean, as they are written; "" where it has none.
+
+    variance  of its exact variance, and `zero` where there may be none
+    bounds    of its bounds
+    tails     of the lightness of its tails
+    more      what there may be more of
+    other     what else would decide, in words
+    """
+
+    variance: str = ""
+    zero: str = ""
+    bounds: str = ""
+    tails: str = ""
+    more: str = "samples"
+    other: str = ""
+
+    def of_values(self) -> str:
+        """Return in words what would decide about values that vary, "" if there is nothing."""
+        ways = [way for way in (self.bounds, self.variance, self.tails) if way]
+        return f", or declare {_either(ways)}" if ways else f", or {self.other}" if self.other else ""
+
+    def of_a_constant(self) -> str:
+        """Return in words what would decide where no value differs from another."""
+        ways = [way for way in (self.zero, self.bounds) if way]
+        if ways:
+            return f". Declare {_either(ways)} of its values"
+        return f": ask for more {self.more}" + (f", or {self.other}" if self.other else "")
+
+
+def _either(ways: list[str]) -> str:
+    return f"{', '.join(ways[:-1])}, or {ways[-1]}" if len(ways) > 1 else ways[0]
+
+
+NOTHING_MORE = Declarable()

@@ -27,6 +27,7 @@ _LEAST = 10.0  # variance of the sum of a cell whose square may enter a chi-squa
 _NORMAL = 50.0  # variance from which on a sum's tail is the normal one, corrected for skewness
 _SKEW = 0.5  # largest exponent of that correction
 _THIRD = 0.3  # of the samples of a cell: a level at which more would have to be missing is too fine to speak of
+_WRONG = 5.0  # standard errors by which an integral must be off to be the cause
 _TELLING = 100.0  # variance of all residuals: with less, nothing is said
 
 
@@ -92,10 +93,13 @@ def whole(name: str, sums: tuple[Sums, ...], alpha: float) -> Finding:
         return Finding(name, "inconclusive", message, p, alpha)
     spread = 1 / math.sqrt(variance)
     step = (normal_quantile(alpha / 2) + normal_quantile(MISS)) * spread
-    resolution = Resolution("factor on the pdf, off 1 by more than that,", step * (1 + step), MISS)
+    resolution = Resolution("deviation from 1 of a factor on the pdf", step * (1 + step), MISS)
     rejected = p <= alpha
     off = total * spread
-    message = f"labels less their probabilities sum to {off:+.2f} standard deviations; {_integral(sums)}"
+    mean, error = _integral(sums)
+    message = f"labels less their probabilities sum to {off:+.2f} standard deviations"
+    message += f"; by points of the known law the pdf integrates to {mean:.5g} +- {error:.1g}"
+    cause = "normalisation" if abs(mean - 1) > _WRONG * error else "shape"  # a misfit moves the sum too
     return Finding(
         name,
         "rejected" if rejected else "not rejected",
@@ -106,7 +110,7 @@ def whole(name: str, sums: tuple[Sums, ...], alpha: float) -> Finding:
         total,
         -total / variance,
         resolution,
-        cause="normalisation" if rejected else "",
+        cause=cause if rejected else "",
     )
 
 
@@ -115,11 +119,12 @@ def _total(sums: Sums) -> tuple[float, float, float]:
     return float(tail(total, variance, third)), float(total), float(variance)
 
 
-def _integral(sums: tuple[Sums, ...]) -> str:
+def _integral(sums: tuple[Sums, ...]) -> tuple[float, float]:
+    """Return the integral of the pdf by the points of the known law alone, and its standard error."""
     n, first, second = sums[0].ratios.tolist()
     mean = first / max(n, 1)
     error = math.sqrt(max(second / max(n, 1) - mean * mean, 0.0) / max(n, 1))
-    return f"by points of the known law the pdf integrates to {mean:.5g} +- {error:.1g}"
+    return mean, error
 
 
 def cells_at(name: str, depth: int, sums: tuple[Sums, ...], alpha: float) -> Finding:
@@ -221,6 +226,6 @@ def _reach(sums: Sums, depths: int, alpha: float) -> Resolution | None:
             share = z / math.sqrt(max(float(_folded(sums.cells, depth)[1].min()), 1e-300))
             share += 0.5 * share**2  # what the tail is wider for skewness, or for Bennett's bound
             if share <= _THIRD:
-                kind = f"factor on the pdf in one of {1 << depth} cells, off 1 by more than that,"
+                kind = f"deviation from 1 of a factor on the pdf in one of {1 << depth} cells"
                 return Resolution(kind, share / (1 - share), MISS)
     return None

@@ -3,7 +3,8 @@
 Data of two values (hit or miss) get the exact binomial test. Anything else gets Student's t, whose far tail is wrong by the factor
 exp(|skewness| z^3 / (3 sqrt n)) to leading order (Edgeworth's expansion of the studentised mean, Hall 1987): the p-value is
 multiplied by that factor, and where it is large, or one sample dominates the variance, or the sample varies less than declared, the
-verdict is inconclusive. What is declared (`Known`) is tested beside it, whatever the law.
+verdict is inconclusive. What is declared (`Known`) is tested beside it, whatever the law, and what events that were not met may
+bring within declared bounds is allowed for.
 """
 
 from __future__ import annotations
@@ -14,12 +15,14 @@ from dataclasses import replace
 from fogproof.checks.statistics.binomial import binomial_p
 from fogproof.checks.statistics.cells import MISS
 from fogproof.checks.statistics.extremes import detectable, extremes_p
-from fogproof.checks.statistics.known import NOTHING, Known
+from fogproof.checks.statistics.interval import effect_interval
+from fogproof.checks.statistics.known import NOTHING, NOTHING_MORE, Declarable, Known
 from fogproof.checks.statistics.light import light_tailed_p, light_tailed_reach
 from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.statistics.power import binomial_reach, student_reach
 from fogproof.checks.statistics.tails import normal_quantile, student_two_sided
-from fogproof.checks.verdict import EffectInterval, Finding, Outcome, Resolution
+from fogproof.checks.statistics.unseen import SHARE, allowances, unseen
+from fogproof.checks.verdict import Finding, Outcome, Resolution
 
 LARGEST_CORRECTION = 1.0  # of the exponent |skewness| z^3 / (3 sqrt n); beyond it the expansion is not trusted
 LARGEST_SHARE = 0.05  # of one sample in the sum of squares; beyond it the variance itself may be infinite
@@ -28,7 +31,7 @@ _LEAST = 100  # samples, below which none but declared facts tells anything
 _SHORT = 4.0  # standard deviations by which a sample's variance may fall short of the declared one
 DOUBT = 0.01
 """A p-value below this that holds for every law, where the usual test could not be used, is no pass yet."""
-LAWLESS = 0.1  # share of alpha for declared facts, which hold whatever the law
+DISTRIBUTION_FREE = 0.1  # share of alpha for declared facts, which hold whatever the law
 
 
 def mean_test(
@@ -41,54 +44,38 @@ def mean_test(
     cause: str = "bias",
     known: Known = NOTHING,
     uncertain: float | None = None,
+    ways: Declarable = NOTHING_MORE,
 ) -> Finding:
     """Test that the expectation behind `data` lies within `error` of `reference`.
 
     uncertain  the part of the error by which the reference itself may be off, all of it unless given; the rest is tolerated
+    ways       what the caller could declare, for messages
     """
     uncertain = error if uncertain is None else uncertain
     if data.n == 0:
         return Finding(name, "inconclusive", f"{what}: there are no data", alpha=alpha)
-    share = alpha if known == replace(NOTHING, light=known.light) else (1 - LAWLESS) * alpha
+    share = alpha if known == replace(NOTHING, light=known.light) else (1 - DISTRIBUTION_FREE) * alpha
     if data.low == data.high:
-        finding = _constant(name, what, data, reference, error, share, known)
-    elif _two_valued(data):
-        finding = _two_values(name, what, data, reference, error, share)
+        finding = _constant(name, what, data, reference, error, share, known, ways)
+    elif two_valued(data):
+        finding = _two_values(name, what, data, reference, error, share, known)
     else:
-        finding = _student(name, what, data, reference, error, share, known)
+        finding = _student(name, what, data, reference, error, share, known, ways)
     if share < alpha and finding.outcome != "rejected":
         finding = _lawless(finding, what, data, reference, error, alpha - share, known)
     elif share < alpha and finding.p_value is not None:
         p = extremes_p(data, reference - error, reference + error, known)
         if p <= alpha - share:
-            finding = replace(finding, p_value=max(p, finding.p_value), exact=False, lawless=True)
+            finding = replace(finding, p_value=max(p, finding.p_value), exact=False, distribution_free=True)
     if finding.outcome == "not rejected" and uncertain > abs(reference) and uncertain > data.stderr:
         message = f"{finding.message}; the reference is known too coarsely, to within {uncertain:.2g}, to tell it from nothing"
         finding = replace(finding, outcome="inconclusive", message=message, p_value=None, resolution=None)
-    reach = normal_quantile(0.5 * MISS) * data.stderr
     effect = data.mean - reference
-    interval = EffectInterval(effect - reach, effect + reach, 1 - MISS) if math.isfinite(reach) else None
+    interval = effect_interval(data, reference, known, two_valued(data))
     rejected = finding.outcome == "rejected"
     if rejected and finding.p_value is not None and known.variance is None and not known.bounded:
-        finding = replace(finding, message=finding.message + unseen(data, effect, error, alpha))
+        finding = replace(finding, message=finding.message + unseen(data, effect, error, alpha, known))
     return replace(finding, interval=interval, cause=cause if rejected else "", region=_side(effect, rejected))
-
-
-def unseen(data: Moments, effect: float, error: float, alpha: float) -> str:
-    """Return in words what an event that was never seen would have to be, to explain the effect."""
-    size = unseen_size(data, effect, error, alpha)
-    rarest = math.log(1 / alpha) / data.n
-    if rarest >= 1:
-        return ""
-    return (
-        f"; an event unseen in {data.n} (probability below {rarest:.1g}) would have to bring {size:+.2g} to explain it"
-    )
-
-
-def unseen_size(data: Moments, effect: float, error: float, alpha: float) -> float:
-    """Return how far from the mean an unseen event would have to lie: a likelier one would have been seen but for alpha."""
-    gap = max(abs(effect) - error, 0.0)
-    return math.copysign(gap * (data.n / math.log(1 / alpha)), -effect)
 
 
 def _side(effect: float, rejected: bool) -> tuple[str, ...]:
@@ -99,7 +86,7 @@ def trusted(data: Moments, alpha: float, known: Known = NOTHING) -> bool:
     """Return whether the usual test may be used at alpha: skewed values need many samples, and rare ones must be among them."""
     if short_of_variance(data, known):
         return False
-    if _two_valued(data) or data.m2 == 0:
+    if two_valued(data) or data.m2 == 0:
         return True
     if data.n < _LEAST:
         return False
@@ -116,13 +103,20 @@ def short_of_variance(data: Moments, known: Known) -> bool:
     return square + _SHORT * spread < (known.deviation / data.scale) ** 2 * (1 - 1e-9)
 
 
-def _two_valued(data: Moments) -> bool:
+def two_valued(data: Moments) -> bool:
     """Return whether there are two values, each of which came back: one that came once may be any of many."""
     return data.values is not None and len(data.values) == 2 and min(data.values.values()) > 1
 
 
 def _constant(
-    name: str, what: str, data: Moments, reference: float, error: float, alpha: float, known: Known
+    name: str,
+    what: str,
+    data: Moments,
+    reference: float,
+    error: float,
+    alpha: float,
+    known: Known,
+    ways: Declarable,
 ) -> Finding:
     gap = abs(data.mean - reference)
     if gap <= error + 1e-12 * abs(reference):
@@ -130,32 +124,45 @@ def _constant(
         return Finding(name, "not rejected", message, None, alpha, effect=gap)
     message = f"{what}: all {data.n} samples are {data.mean:.12g} and the reference is {reference:.12g}"
     if not known.two_sided:
-        message += f"; an event too rare to be seen looks the same as a bias{unseen(data, data.mean - reference, error, alpha)}"
-        message += (
-            ". Declare variance=0 if the estimator has none, its exact variance=, or bounds=(low, high) of its values"
-        )
+        message += "; an event too rare to be seen looks the same as a bias"
+        message += unseen(data, data.mean - reference, error, alpha, known) + ways.of_a_constant()
     return Finding(name, "inconclusive", message, None, alpha, effect=data.mean - reference)
 
 
-def _two_values(name: str, what: str, data: Moments, reference: float, error: float, alpha: float) -> Finding:
+def _two_values(
+    name: str, what: str, data: Moments, reference: float, error: float, alpha: float, known: Known
+) -> Finding:
     assert data.values is not None
     (low, _), (high, count) = sorted(data.values.items())
     step = high - low
-    claim = (reference - error - low) / step, (reference + error - low) / step
+    down, up = allowances(data, known, alpha)
+    claim = (reference - error - up - low) / step, (reference + error + down - low) / step
     p = binomial_p(count, data.n, *claim) if claim[0] <= 1 and claim[1] >= 0 else 0.0
+    p = _with_unseen(p, down + up)
     outcome: Outcome = "rejected" if p <= alpha else "not rejected"
     message = f"{what} {data.mean:.7g}, reference {reference:.7g} (exact binomial test of its two values)"
     effect = data.mean - reference
-    inside = min(max(claim[0], 0.0), 1.0), min(max(claim[1], 0.0), 1.0)
-    reach = binomial_reach(data.n, *inside, alpha) * step + error
-    resolution = Resolution(f"bias of {what}", reach, MISS, reference)
+    resolution = None
+    if claim[0] <= 1 and claim[1] >= 0:  # no law of these two values has another mean: nothing is planned for it
+        inside = max(claim[0], 0.0), min(claim[1], 1.0)
+        reach = binomial_reach(data.n, *inside, alpha) * step + error + max(down, up)
+        resolution = Resolution(f"bias of {what}", reach, MISS, reference)
     return Finding(name, outcome, message, p, alpha, False, effect, effect, resolution)
 
 
 def _student(
-    name: str, what: str, data: Moments, reference: float, error: float, alpha: float, known: Known
+    name: str,
+    what: str,
+    data: Moments,
+    reference: float,
+    error: float,
+    alpha: float,
+    known: Known,
+    ways: Declarable,
 ) -> Finding:
-    gap = max(abs(data.mean - reference) - error - _ROUNDING * max(abs(data.mean), abs(reference)), 0.0)
+    rounding = _ROUNDING * max(abs(data.mean), abs(reference))
+    down, up = allowances(data, known, alpha)
+    gap = max(abs(data.mean - reference) - error - rounding - (down if data.mean > reference else up), 0.0)
     stderr = max(data.stderr, math.ulp(0.0))  # of denormal numbers it may vanish
     z = gap / stderr
     needed = normal_quantile(alpha / 2)
@@ -166,34 +173,35 @@ def _student(
         message += f" (z = {effect / stderr:+.2f})"
     light = known.light and data.n > 1 and not short_of_variance(data, known)
     if not (light or trusted(data, alpha, known)):
-        message += _why_not(data, alpha, known, growth * needed**3, effect, error)
+        message += _why_not(data, alpha, known, growth * needed**3, effect, error, ways)
         return Finding(name, "inconclusive", message, None, alpha, False, z, effect)
     p = light_tailed_p(data.n, z) if light else _corrected(student_two_sided(data.n - 1, z), growth, z, needed)
+    p = _with_unseen(p, down + up)
     outcome: Outcome = "rejected" if p <= alpha else "not rejected"
-    exact = not light and growth * needed**3 < 0.3 and error < 0.01 * data.stderr
+    exact = down == up == 0 and not light and growth * needed**3 < 0.3 and error < 0.01 * data.stderr
     reach = light_tailed_reach(data.n, alpha) * data.stderr if light else student_reach(data, alpha)
-    resolution = Resolution(f"bias of {what}", reach + error, MISS, reference) if math.isfinite(reach) else None
+    reach += error + rounding + max(down, up)  # which are no bias, and hide one
+    resolution = Resolution(f"bias of {what}", reach, MISS, reference) if math.isfinite(reach) else None
     if light:
         message += ", its tails declared to be light"
     return Finding(name, outcome, message, p, alpha, exact, z, effect, resolution)
 
 
-def _why_not(data: Moments, alpha: float, known: Known, exponent: float, effect: float, error: float) -> str:
+def _why_not(
+    data: Moments, alpha: float, known: Known, exponent: float, effect: float, error: float, ways: Declarable
+) -> str:
     if short_of_variance(data, known):
         return f"; the sample varies by {data.deviation:.3g}, less than the declared {known.deviation:.3g}: rare values are missing"
+    declare = "" if known.two_sided else ways.of_values()
+    declare += unseen(data, effect, error, alpha, known)
     if data.n < _LEAST:
-        said = f"; {data.n} are too few to know their law: ask for {_LEAST} at least"
-        return said + _declare(known) + unseen(data, effect, error, alpha)
-    enough = math.ceil(data.n * max(exponent / LARGEST_CORRECTION, 1) ** 2)
-    said = (
-        f"; too skewed for a test at alpha = {alpha:.1g} (skewness {data.skewness:.3g}, the largest sample has"
-        f" {data.largest_share:.1%} of the variance): ask for about {max(enough, 4 * data.n)} samples"
-    )
-    return said + _declare(known) + unseen(data, effect, error, alpha)
-
-
-def _declare(known: Known) -> str:
-    return "" if known.two_sided else ', or declare bounds=(low, high), the exact variance=, or tails="light"'
+        return f"; {data.n} are too few to know their law: ask for {_LEAST} at least{declare}"
+    enough = max(math.ceil(data.n * max(exponent / LARGEST_CORRECTION, 1) ** 2), 4 * data.n)
+    largest = f"the largest sample has {data.largest_share:.1%} of the variance"
+    why = f"too skewed for a test at alpha = {alpha:.1g} (skewness {data.skewness:.3g}, {largest})"
+    if exponent <= LARGEST_CORRECTION:
+        why = f"too few for so wide a tail ({largest})"
+    return f"; {why}: ask for about {enough} {ways.more}{declare}"
 
 
 def _lawless(
@@ -212,7 +220,7 @@ def _lawless(
             alpha=alpha,
             exact=False,
             effect=effect,
-            lawless=True,
+            distribution_free=True,
         )
     if finding.outcome == "inconclusive" and known.two_sided and p <= DOUBT:
         message = f"{finding.message.partition(';')[0]}; {known.words()} leave that a probability of {p:.2g}: ask for more samples"
@@ -229,3 +237,8 @@ def _corrected(p_normal: float, growth: float, z: float, needed: float) -> float
     """Return the corrected p-value; the correction stops growing where the expansion stops being one."""
     limit = max(needed, (LARGEST_CORRECTION / growth) ** (1 / 3)) if growth > 0 else math.inf
     return min(1.0, p_normal * math.exp((growth ** (1 / 3) * min(z, limit)) ** 3))  # z alone may be as large as 1e300
+
+
+def _with_unseen(p: float, allowed: float) -> float:
+    """Return the p-value with the share of alpha for events that are likelier than was allowed for."""
+    return min(1.0, p / (1 - SHARE)) if allowed > 0 else p

@@ -62,13 +62,18 @@ def scan(name: str, marginal: Marginal, counts: np.ndarray, alpha: float) -> Fin
     unseen = 2 * float(np.max(marginal.error + marginal.blur))
     band = _smallest_band(n, alpha / rivals, len(counts)) + 3 * unseen
     resolution = Resolution(f"missing band in {marginal.label}", min(band, 1.0), MISS)
-    return _finding(name, best, n, alpha, between(marginal, best.first, best.last), resolution, len(counts), True)
+    return _finding(
+        name, best, n, alpha, between(marginal, best.first, best.last), resolution, len(counts), not marginal.whole
+    )
 
 
-def scan_ends(name: str, marginal: Marginal, counts: np.ndarray, low: float, high: float, alpha: float) -> Finding:
+def scan_ends(
+    name: str, marginal: Marginal, counts: np.ndarray, low: float, high: float, grain: float, alpha: float
+) -> Finding:
     """Look at both ends of an axis: the samples in its first and last 1, 2, 4, ... cells, and the extreme samples themselves.
 
     low, high  smallest and largest counted coordinate. With u the cdf there, P(U_min > u) = (1 - u)^n exactly.
+    grain      step of the sampler's uniforms: 0 itself comes with that probability
     """
     n = int(counts.sum())
     if n == 0:
@@ -88,7 +93,7 @@ def scan_ends(name: str, marginal: Marginal, counts: np.ndarray, low: float, hig
         if p < best.p:
             best, what = _Place(p, first, last, observed, mass), between(marginal, first, last)
     for share, side, cell in ((float(at[0]), 0, 0), (float(1 - at[1]), -1, cells - 1)):
-        doubt = marginal.error[1 if side == 0 else -2] + marginal.blur[1 if side == 0 else -2]
+        doubt = marginal.error[1 if side == 0 else -2] + marginal.blur[1 if side == 0 else -2] + grain
         p = tries * _extreme_p(share, doubt, n)
         if p < best.p:
             where = f"the extreme sample, beyond which the pdf puts a probability of {share:.3g}"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ import numpy as np
 from fogproof.errors import InvalidInputError, NotInstalledError
 from fogproof.images.formats import LARGEST, Channels, too_large
 from fogproof.input_files import open_regular
+from fogproof.reports.files import write_output
 
 
 def read(path: Path) -> Channels:
@@ -80,10 +82,13 @@ def write(path: Path, channels: Channels) -> None:
     exr = _library()
     header = {"compression": exr.ZIP_COMPRESSION, "type": exr.scanlineimage}
     pixels = {name: np.ascontiguousarray(channel, np.float32) for name, channel in channels.items()}
-    try:
-        exr.File(header, pixels).write(str(path))
-    except RuntimeError as error:
-        raise InvalidInputError(f"cannot write {path}: {error}", str(path)) from None
+    with tempfile.TemporaryDirectory() as folder:
+        whole = Path(folder) / "image.exr"
+        try:
+            exr.File(header, pixels).write(str(whole))
+        except RuntimeError as error:
+            raise InvalidInputError(f"cannot write {path}: {error}", str(path)) from None
+        write_output(path, whole.read_bytes())
 
 
 def _library() -> Any:

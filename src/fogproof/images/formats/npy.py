@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import warnings
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import numpy as np
 from fogproof.errors import InvalidInputError
 from fogproof.images.formats import LARGEST, Channels, layers, too_large
 from fogproof.input_files import open_regular, size_of
+from fogproof.reports.files import write_output
 
 
 def read(path: Path) -> Channels:
@@ -44,4 +46,6 @@ def read(path: Path) -> Channels:
 def write(path: Path, channels: Channels) -> None:
     """Write the channels as (rows, columns), or (rows, columns, channels) in their order."""
     parts = list(channels.values())
-    np.save(path, parts[0] if len(parts) == 1 else np.stack(parts, axis=-1), allow_pickle=False)
+    content = io.BytesIO()
+    np.save(content, parts[0] if len(parts) == 1 else np.stack(parts, axis=-1), allow_pickle=False)
+    write_output(path, content.getvalue())

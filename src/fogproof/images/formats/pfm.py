@@ -10,6 +10,7 @@ import numpy as np
 from fogproof.errors import InvalidInputError
 from fogproof.images.formats import LARGEST, Channels, layers, too_large
 from fogproof.input_files import open_regular, size_of
+from fogproof.reports.files import write_output
 
 HEADER = re.compile(rb"(P[Ff])\s+(\d{1,9})\s+(\d{1,9})\s+([-+]?[0-9.]{1,20}(?:[eE][-+]?\d{1,3})?)[ \t\r]*\n")
 
@@ -49,4 +50,5 @@ def write(path: Path, channels: Channels) -> None:
         raise InvalidInputError(f"{path}: a PFM has one channel or three, not {len(parts)}", str(path))
     rows, columns = parts[0].shape
     array = np.stack(parts, axis=-1)[::-1].astype("<f4")
-    Path(path).write_bytes(f"P{'F' if len(parts) == 3 else 'f'}\n{columns} {rows}\n-1.0\n".encode() + array.tobytes())
+    head = f"P{'F' if len(parts) == 3 else 'f'}\n{columns} {rows}\n-1.0\n"
+    write_output(path, head.encode() + array.tobytes())

@@ -43,8 +43,8 @@ def ours(lobe: PhaseTruth, function):
     return each(*names)(take) if names else take
 
 
-def formulas_of(lobe: PhaseTruth) -> Iterator[Formula]:
-    """Yield every formula of one phase function."""
+def formulas_of_estimators(lobe: PhaseTruth) -> Iterator[Formula]:
+    """Yield what estimators draw and evaluate of one phase function."""
     what, loose = lobe.name.replace("_", " "), lobe.loose
     naive = lobe.printed.get
     yield Formula(
@@ -90,6 +90,11 @@ def formulas_of(lobe: PhaseTruth) -> Iterator[Formula]:
         loose.get("value", 3.0),
         naive("pdf", ()),
     )
+
+
+def formulas_of_the_oracle(lobe: PhaseTruth) -> Iterator[Formula]:
+    """Yield what the oracle answers of one phase function."""
+    what, naive = lobe.name.replace("_", " "), lobe.printed.get
     for name, function, truth, first in (
         ("pdf", analytic.phase_pdf, lobe.pdf, {"mu": cosines}),
         ("cdf", analytic.phase_cdf, lobe.cdf, {"mu": cosines}),
@@ -121,4 +126,8 @@ def formulas_of(lobe: PhaseTruth) -> Iterator[Formula]:
 MIXED = ("hazy", "murky", "double_henyey_greenstein")
 """Sums of two, of which a sampler chooses one first: what it draws is not the quantile."""
 
-FORMULAS = [replace(formula, size=lobe.size) for lobe in PHASES for formula in formulas_of(lobe)]
+FORMULAS = [
+    replace(formula, size=lobe.size)
+    for lobe in PHASES
+    for formula in (*formulas_of_estimators(lobe), *formulas_of_the_oracle(lobe))
+]

@@ -1,0 +1,48 @@
+"""Numbers that options take, judged before anything runs: what no run could use is bad usage, not an outcome."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import click
+
+from fogproof.validate import LONGEST
+
+
+@dataclass
+class _Number(click.ParamType):  # type: ignore[type-arg]  # generic since click 8.3, and not before
+    """A finite number from `low` to `high`; an open end is not among them."""
+
+    low: float
+    high: float
+    opens: bool = False
+    closes: bool = True
+    name = "float"
+
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """Return the number, or say what it must be."""
+        try:
+            x = float(value)  # type: ignore[arg-type]
+        except (TypeError, ValueError):
+            x = math.nan
+        inside = (self.low < x if self.opens else self.low <= x) and (x <= self.high if self.closes else x < self.high)
+        if not (inside and math.isfinite(x)):
+            ends = f"{'(' if self.opens else '['}{self.low:g}, {self.high:g}{']' if self.closes else ')'}"
+            self.fail(f"must be a number in {ends}, got {value}", param, ctx)
+        return x
+
+
+PROBABILITY = _Number(1e-90, 1, closes=False)
+"""A false-alarm probability: its share for each of many cases is still one that arithmetic can keep."""
+
+SECONDS = _Number(0, LONGEST, opens=True)
+"""A time limit [s]."""
+
+SECONDS_OR_NONE = _Number(0, LONGEST)
+"""A time limit [s], or 0 for none."""
+
+RELATIVE = _Number(0, 1, closes=False)
+"""A relative error that does not matter."""
+
+POSITIVE = _Number(0, math.inf, opens=True, closes=False)

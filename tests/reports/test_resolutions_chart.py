@@ -1,0 +1,38 @@
+"""The chart of what passes could not have missed names every case in full, as far as there is room."""
+
+import pytest
+
+from fogproof.reports.charts.pictures import render
+from fogproof.reports.charts.resolutions import Resolutions
+
+
+def drawn(*names, kind="bias"):
+    return render(Resolutions(tuple((name, kind, 1e-3 * (k + 1)) for k, name in enumerate(names))), "a")
+
+
+@pytest.mark.parametrize(
+    ("names", "shown", "folder"),
+    [
+        (("bsdf/rough/ggx/15", "bsdf/rough/beckmann/15"), ("ggx/15", "beckmann/15"), "bsdf/rough/"),
+        (("bsdf/rough/15", "bsdf/roughly/15"), ("rough/15", "roughly/15"), "bsdf/"),
+        (("a/b", "a/b"), ("b", "b"), "a/"),
+        (("a/b/c",), ("a/b/c",), ""),
+        (("one", "other"), ("one", "other"), ""),
+    ],
+)
+def test_what_all_names_share_stands_in_the_caption(names, shown, folder):
+    figure = drawn(*names)
+    assert all(f">{name}<" in figure.on_page for name in shown)
+    assert ("All names begin with" in figure.words) == bool(folder)
+    assert f"All names begin with {folder}" in figure.words or not folder
+
+
+def test_names_of_forty_letters_are_not_cut():
+    name = "roughconductor/beckmann/alpha=0.4/whole/50"
+    assert f">{name}<" in drawn(name, "x").on_page
+
+
+def test_names_wider_than_half_the_chart_lose_their_middle():
+    page = drawn("w" * 200, "x").on_page
+    assert "w…w" in page
+    assert "w" * 100 not in page
