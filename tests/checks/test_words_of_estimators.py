@@ -191,6 +191,14 @@ def test_many_channels_are_told_in_ranges_and_by_the_coarsest():
     assert in_ranges([f"mean of order {k}" for k in (1, 2, 3, 7)]) == ["mean of order 1 to 3", "mean of order 7"]
 
 
+def test_of_two_estimators_the_difference_is_told():
+    one = compare_estimators(uniform, uniform, samples=5000)
+    assert one.resolution.kind == "difference of means"
+    scale = np.array([1.0, 3.0])
+    two = compare_estimators(*2 * [lambda rng, n: rng.random((n, 2)) * scale], samples=5000)
+    assert two.resolution.kind == "difference of means in channel 1"
+
+
 def test_orders_without_a_reference_are_told_as_unchecked():
     def draw(rng, n):
         return Draws(rng.random(n), order=np.arange(n) % 2)

@@ -131,6 +131,9 @@ class Pairs:
             message = f"{start}; one of them never varies, and a value too rare to be seen may hold the difference"
             message += ": ask for more samples, or declare bounds=(low, high) or the exact variance=(first, second)"
             finding = replace(finding, outcome="inconclusive", message=message, p_value=None, resolution=None)
+        if finding.resolution is not None:
+            kind = name.replace("difference", "difference of means", 1)
+            finding = replace(finding, resolution=replace(finding.resolution, kind=kind))
         rejected = finding.outcome == "rejected"
         larger = ("the first is the larger",) if effect > 0 else ("the second is the larger",)
         return replace(finding, effect=effect, region=larger if rejected else (), cause="bias" if rejected else "")
