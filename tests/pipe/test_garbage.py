@@ -27,6 +27,16 @@ def test_noise_is_rejected(points):
     assert verdict.outcome == "rejected", verdict
 
 
+@pytest.mark.parametrize("height", [1e20, 1e200])
+@pytest.mark.parametrize("domain", [Interval(0, 0.5), UnitSphere()], ids=["interval", "sphere"])
+def test_a_density_that_is_much_too_high_is_not_normalised(domain, height):
+    dimensions = 2 if domain.shape else 1
+    verdict = check_sampler(
+        lambda u: place(domain, u), lambda x: np.full(len(x), height), domain, dimensions=dimensions, samples=2000
+    )
+    assert (verdict.outcome, verdict.cause) == ("rejected", "normalisation"), verdict
+
+
 @pytest.mark.parametrize("domain", [Interval(0, 0.5), UnitSphere()], ids=["interval", "sphere"])
 def test_a_density_near_the_largest_number_is_no_accident(domain):
     """Its integral is no number; nothing of it passes."""
