@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fogproof import Interval, UnitSphere, check_sampler
+from fogproof import HalfLine, Interval, UnitSphere, check_sampler
 
 
 def bits(n):
@@ -45,3 +45,13 @@ def test_a_density_near_the_largest_number_is_no_accident(domain):
         lambda u: place(domain, u), lambda x: np.full(len(x), 1e308), domain, dimensions=dimensions, samples=2000
     )
     assert verdict.outcome != "not rejected", verdict
+
+
+def test_a_density_that_leaves_no_cells_is_no_accident():
+    """Between the smallest and a large number at random: no cell of the half line has a mass."""
+
+    def pdf(x):
+        return np.where(np.random.default_rng().random(len(x)) < 0.5, 5e-324, 1e300)
+
+    verdict = check_sampler(lambda u: u[:, 0], pdf, HalfLine(0), dimensions=2, samples=2000)
+    assert verdict.outcome == "rejected", verdict
