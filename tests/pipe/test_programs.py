@@ -20,7 +20,7 @@ EXPONENTIAL = {
 GREETING = b'{"fogproof": 1, "type": "float64", "columns": ["x"]}\n'
 # One that is right; SAMPLE and ANSWER are what the wrong ones replace.
 SAMPLER = """
-import array, json, math, os, sys, time
+import array, io, json, math, os, sys, time
 out, given = sys.stdout.buffer, sys.stdin.buffer
 out.write(GREETING); out.flush()
 answered = 0
@@ -32,6 +32,8 @@ while line := given.readline():
     x = array.array("d", [-math.log1p(-u) for u in rows])
     ANSWER
     out.write(b'{"n": %d}\\n' % n); out.write(x.tobytes()); out.flush()
+if isinstance(out, io.BytesIO):
+    sys.stdout.buffer.write(out.getvalue())
 """
 
 
@@ -63,13 +65,14 @@ HOSTILE = {
     "crashes": ("if answered == 2: os.kill(os.getpid(), 11)", "dies", "SIGSEGV"),
     "hangs": ("time.sleep(100)", "hangs", "gave no answer within 1 s"),
     "spins": ("while True: pass", "hangs", "gave no answer within 1 s"),
-    "answers short": ("x = x[:-1]", "hangs", "was due"),
-    "float32": ("x = array.array('f', x)", "hangs", "exactly half: are they float32?"),
+    "answers short": ("x = x[:-1]", "answers short", "was due", "took its answer for complete"),
+    "float32": ("x = array.array('f', x)", "answers short", "exactly half: are they float32?"),
+    "keeps its output": ("out = io.BytesIO()", "does not flush", "bytes more once its input had ended"),
     "answers too much": ("x.append(1.0)", "broken protocol", "more than it was asked for"),
     "announces less": ("n -= 1", "broken protocol", "announces"),
     "garbage": ("out.write(os.urandom(64) + b'\\n')", "broken protocol", "the line before its rows"),
     "text in between": ("print('sample', answered, flush=True)", "broken protocol", "'sample 1'"),
-    "an error of its own": ('out.write(b\'{"error": "sigma_t is 0"}\\n\')', "broken protocol", "says: sigma_t is 0"),
+    "an error of its own": ('out.write(b\'{"error": "sigma_t is 0"}\\n\')', "reports an error", "says: sigma_t is 0"),
     "big-endian": ("x.byteswap()", "byte order", "big-endian"),
     "not a number": ("x = array.array('d', [math.nan] * n)", "outside the domain", "nan is not a point"),
     "closes its output": ("sys.stdout.flush(); os.close(1); time.sleep(100)", "dies", "closed its output and runs on"),
@@ -86,7 +89,8 @@ HOSTILE = {
 @pytest.mark.parametrize("name", HOSTILE)
 def test_what_a_program_does_wrong_is_said(tmp_path, name):
     answer, cause, *words = HOSTILE[name]
-    outcome = judged(program(tmp_path, answer))
+    own_end = Timeouts(start=5.0, answer=1.0, end=5.0) if cause in ("answers short", "does not flush") else QUICK
+    outcome = check_program(program(tmp_path, answer), EXPONENTIAL, Settings(samples=20_000), own_end)
     assert outcome.verdict.outcome == "rejected"
     assert outcome.verdict.cause == cause, outcome.verdict
     for word in words:
@@ -114,6 +118,41 @@ def test_a_wrong_greeting_is_said(tmp_path, greeting):
     outcome = check_program(program(tmp_path, answer, greeting), spec, Settings(), Timeouts(0.5, 0.5, 0.2))
     assert outcome.verdict.outcome == "rejected"
     assert GREETINGS[greeting] in str(outcome.verdict) or not greeting
+
+
+def test_a_greeting_without_its_end_is_shown(tmp_path):
+    command = program(tmp_path, "pass", GREETING.strip())
+    verdict = check_program(command, EXPONENTIAL, Settings(), Timeouts(0.7, 0.5, 5.0)).verdict
+    assert verdict.cause == "answers short", verdict
+    assert '"columns": ["x"]}\' and no end of line came' in str(verdict)
+
+
+def test_more_bytes_than_float32_has_are_questioned(tmp_path):
+    greeting = b'{"fogproof": 1, "type": "float32", "columns": ["x"]}\n'
+    answer = "n = request['n']; x = array.array('d', [0.5] * n)"
+    verdict = judged(program(tmp_path, answer, greeting, SAMPLER.replace("8 * n * k", "4 * n * k"))).verdict
+    assert "are its numbers float64?" in str(verdict)
+
+
+def test_a_slow_program_is_not_said_to_keep_its_output(tmp_path):
+    """It was still writing when time was up: what it wrote later says nothing of buffers."""
+    answer = """
+    out.write(b'{"n": %d}\\n' % n)
+    for i in range(0, n, n // 40):
+        out.write(x[i : i + n // 40].tobytes()); out.flush(); time.sleep(0.1)
+    """
+    verdict = check_program(program(tmp_path, answer), EXPONENTIAL, Settings(), Timeouts(5.0, 1.5, 0.3)).verdict
+    assert verdict.cause == "hangs", verdict
+
+
+def test_points_outside_the_domain_leave_nothing_to_be_asked(tmp_path):
+    """Densities at no points are none, whatever shape a point has."""
+    source = SAMPLER.replace(
+        "[-math.log1p(-u) for u in rows]", "[2.0] * (3 if request['request'] == 'sample' else 1) * n"
+    )
+    greeting = b'{"fogproof": 1, "columns": ["x", "x", "x"], "answers": ["pdf"]}\n'
+    verdict = judged(program(tmp_path, "pass", greeting, source), {"domain": "sphere", "dimensions": 2}).verdict
+    assert verdict.cause == "outside the domain", verdict
 
 
 def test_stderr_is_kept_at_both_ends_and_never_blocks(tmp_path):

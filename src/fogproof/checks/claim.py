@@ -79,7 +79,7 @@ def _ranges(chart: Chart, leaves: Leaves, grid: Grid, density: Density) -> Range
 
 def _doubt(subject: Subject, leaves: Leaves, rounding: float, again: Callable[[], Leaves]) -> str:
     """Return why two integrals of one density do not settle it, "" if they do."""
-    floor = FLOOR[subject.precision] + rounding
+    floor = (FLOOR[subject.precision] + rounding) * max(1.0, abs(leaves.total))  # of what is plainly not 1, relative
     words = f"quadrature gives {leaves.total:.6g} +- {leaves.total_error:.1g}"
     if not leaves.total_error <= _COARSE * floor:
         return words

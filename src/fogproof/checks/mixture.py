@@ -88,7 +88,8 @@ class MixtureTest:
         p = self.density(x)
         with np.errstate(all="ignore"):
             high = np.isfinite(p) & (p > _UNSEEN / (1 - _UNSEEN) * self._q(x, u, self.tree.leaf(u)))
-            mass = np.where(high, p / law, 0.0)
+            most = 0.5 * np.finfo(np.float64).max / len(u)  # so that the sum of any claim is finite
+            mass = np.where(high, np.minimum(p / law, most), 0.0)
         total = mass.sum()
         if not total > _NEGLIGIBLE * len(u):
             return np.empty((0, u.shape[1]))

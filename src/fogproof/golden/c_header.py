@@ -1,4 +1,4 @@
-"""Golden tables as a header for C99 and C++: one struct and one array a quantity, with the conventions in comments."""
+"""Golden tables as a header for C, C89 too, and C++: one struct and one array a quantity, with the conventions in comments."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ def _number(value: Any) -> str:
     if isinstance(value, list):
         return "{" + ", ".join(map(_number, value)) + "}"
     x = float(value)
-    return repr(x) if math.isfinite(x) else "INFINITY" if x > 0 else "-INFINITY"
+    return repr(x) if math.isfinite(x) else "HUGE_VAL" if x > 0 else "-HUGE_VAL"
 
 
 def _string(text: str) -> str:

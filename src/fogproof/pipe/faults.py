@@ -11,6 +11,12 @@ from fogproof.text import one_line
 BROKEN = "broken protocol"
 """The class of a fault that is neither an end nor a silence."""
 
+REFUSES = "reports an error"
+"""The class of a line with an error: the program keeps the protocol and says itself what is wrong."""
+
+HANGS, SHORT, BUFFERS = "hangs", "answers short", "does not flush"
+"""The classes of a silence: nothing comes; it waits for us; its answer stands in a buffer of its own."""
+
 
 class ProgramError(SubjectError):
     """The program died, hung, or broke the protocol; the message holds what it printed, `cause` is the class of the fault."""

@@ -10,7 +10,6 @@ from __future__ import annotations
 import contextlib
 import os
 import select
-import shlex
 import subprocess
 import time
 from collections import deque
@@ -18,8 +17,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 
 from fogproof.children import start
-from fogproof.errors import InvalidInputError, UnsupportedError
-from fogproof.pipe.faults import BROKEN, ProgramError, end_of, quoted
+from fogproof.errors import UnsupportedError
+from fogproof.pipe.command import cannot_start, words_of
+from fogproof.pipe.faults import BROKEN, BUFFERS, HANGS, SHORT, ProgramError, end_of, quoted
 from fogproof.text import one_line
 from fogproof.validate import time_limit
 
@@ -49,16 +49,16 @@ class Process:
     def __init__(self, command: str | Sequence[str], timeouts: Timeouts) -> None:
         if os.name != "posix":
             raise UnsupportedError("programs over pipes need a POSIX system; write a file of samples instead", "--exec")
-        self.words = _words(command)
+        self.words = words_of(command)
         self.timeouts = timeouts
         self.answers = 0
+        self._asked = self._heard = 0.0  # when input went out and output came last
         try:
             self._child = start(
                 self.words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, bufsize=0
             )
         except (OSError, ValueError) as error:
-            reason = getattr(error, "strerror", None) or str(error)
-            raise InvalidInputError(f"cannot start {self.words[0]!r}: {reason}", "--exec") from None
+            raise cannot_start(self.words[0], error) from None
         self._popen = self._child.popen
         streams = self._popen.stdin, self._popen.stdout, self._popen.stderr
         self._in, self._out, self._err = (stream.fileno() for stream in streams if stream is not None)
@@ -70,11 +70,14 @@ class Process:
         self._ahead = b""
         self._said, self._last, self._said_bytes = b"", b"", 0
         self.note = ""
+        self._late = 0  # bytes that came after the end of the input
+        self._ended_itself = False
 
     def send(self, data: bytes | memoryview) -> None:
         """Queue bytes for stdin; they are written while an answer is awaited."""
         if len(data):
             self._pending.append(memoryview(data))
+            self._asked = time.monotonic()
 
     def line(self, seconds: float, awaited: str) -> bytes:
         """Return the next line without its end."""
@@ -82,7 +85,8 @@ class Process:
         while b"\n" not in self._ahead:
             if len(self._ahead) > _LINE:
                 raise self.broken(f"wrote {quoted(self._ahead)} and no end of line where {awaited} was due")
-            self._ahead += self._some(deadline, seconds, awaited, _LINE)
+            so_far = f" ({quoted(self._ahead)} and no end of line came)" if self._ahead else ""
+            self._ahead += self._some(deadline, seconds, f"{awaited}{so_far}", _LINE)
         line, _, self._ahead = self._ahead.partition(b"\n")
         if len(line) > _LINE:
             raise self.broken(f"wrote {quoted(line)}, a line of {len(line)} bytes, where {awaited} was due")
@@ -92,14 +96,7 @@ class Process:
         """Return the next lines without their ends, all within the time limit."""
         deadline, parts, found, size = time.monotonic() + seconds, [self._ahead], self._ahead.count(b"\n"), 0
         while found < count:
-            parts.append(
-                self._some(
-                    deadline,
-                    seconds,
-                    f"{awaited} ({found} of {count} lines came: does it keep some back, in a buffer of its input or output?)",
-                    _CHUNK,
-                )
-            )
+            parts.append(self._some(deadline, seconds, f"{awaited} ({found} of {count} lines came)", _CHUNK))
             found, size = found + parts[-1].count(b"\n"), size + len(parts[-1])
             if size > _LINE * (found + 1):
                 raise self.broken(f"wrote {quoted(parts[1])} and no end of line where {awaited} was due")
@@ -122,6 +119,7 @@ class Process:
             if not came:
                 raise self._ended(told(at))
             at += came
+            self._heard = time.monotonic()
 
     def unasked(self) -> bytes:
         """Return some of what the program has written though nothing was asked, without waiting."""
@@ -151,23 +149,25 @@ class Process:
 
         `note` says afterwards what it did that was not asked of it.
         """
+        if not self._open:
+            return
         before = self._popen.poll()
         with contextlib.suppress(OSError):
             self._close(self._in)
         deadline = time.monotonic() + self.timeouts.end
-        extra = len(self._ahead)
         try:
             while self._popen.poll() is None and time.monotonic() < deadline:
                 for pipe in self._ready(0.02):
                     if pipe == self._err:
                         self._listen()
                     elif pipe == self._out:
-                        extra += len(self._read(_CHUNK))
+                        self._late += len(self._read(_CHUNK))
         finally:
             code = self._popen.poll()
             self._child.kill()
         while self._out in self._open and (rest := self._read(_CHUNK)):
-            extra += len(rest)
+            self._late += len(rest)
+        extra, self._ended_itself = len(self._ahead) + self._late, code is not None
         self._listen()
         for pipe in list(self._open):
             self._close(pipe)
@@ -185,6 +185,7 @@ class Process:
                 data = os.read(self._out, most)
                 if not data:
                     raise self._ended(awaited)
+                self._heard = time.monotonic()
                 return data
 
     def _turn(self, deadline: float, seconds: float, awaited: str) -> None:
@@ -194,7 +195,7 @@ class Process:
             if left <= 0:
                 left_over = sum(map(len, self._pending))
                 unread = f"; it left {left_over} bytes of its input unread" if left_over else ""
-                raise self.broken(f"gave no answer within {seconds:g} s where {awaited} was due{unread}", "hangs")
+                raise self._silent(f"gave no answer within {seconds:g} s where {awaited} was due{unread}", seconds)
             ready = self._ready(left)
             if self._err in ready:
                 self._listen()
@@ -202,6 +203,25 @@ class Process:
                 self._write()
             if self._out in ready or self._out not in self._open:
                 return
+
+    def _silent(self, what: str, seconds: float) -> ProgramError:
+        """Return what to say of a program that gave no answer in time; the end of its input tells whether it waits for us.
+
+        One that was still writing is slow, and what it writes then says nothing.
+        """
+        slow = time.monotonic() - self._heard < 0.5 * seconds
+        error, runs = self.broken(what, HANGS), self._popen.poll() is None
+        if slow or not runs:
+            return error
+        self.stop()
+        if self._late:
+            self.note = ""
+            hint = "let it flush its output after every answer, and read its input as it comes (mawk -W interactive)"
+            more = f"it wrote {self._late} bytes more once its input had ended, so they had stood in a buffer: {hint}"
+            return ProgramError(f"{error}; {more}", BUFFERS)
+        if self._ended_itself and self._heard > self._asked:
+            return ProgramError(f"{error}; it ended with its input: it took its answer for complete", SHORT)
+        return error
 
     def _ready(self, seconds: float) -> set[int]:
         poll = select.poll()
@@ -262,16 +282,6 @@ class Process:
         code = self._popen.poll()
         what = "closed its output and runs on" if code is None else end_of(code)
         return self.broken(f"{what} where {awaited} was due", "dies")
-
-
-def _words(command: str | Sequence[str]) -> list[str]:
-    try:
-        words = shlex.split(command) if isinstance(command, str) else list(command)
-    except ValueError as error:
-        raise InvalidInputError(f"cannot read the command {command!r}: {error}", "--exec") from None
-    if not words or not words[0]:
-        raise InvalidInputError("the command is empty", "--exec")
-    return words
 
 
 def _widen(pipe: int) -> None:

@@ -50,7 +50,7 @@ class Program:
             self.stop()
             raise
         except BrokenLineError as broken:
-            raise self.refuse(str(broken)) from None
+            raise self.refuse(str(broken), broken.cause) from None
         except BaseException:
             self.stop()
             raise
@@ -66,9 +66,14 @@ class Program:
         parameters: Mapping[str, float],
     ) -> np.ndarray:
         extra = process.unasked()
-        if extra:
-            raise BrokenLineError(f"wrote more than it was asked for: {_shown(extra)}")
         kind, seconds = self.greeting.type, self._timeouts.answer
+        if extra:
+            wide = (
+                " (are its numbers float64?)"
+                if kind == "float32" and len(extra) >= 4 * len(self.greeting.columns)
+                else ""
+            )
+            raise BrokenLineError(f"wrote more than it was asked for: {_shown(extra)}{wide}")
         process.send(request_line(request, n, rows.shape[1], seed, parameters))
         process.send(encoded(rows, kind))
         require_answer(process.line(seconds, f'the answer to "{request}" of {n} rows'), n)

@@ -9,6 +9,7 @@ from typing import Any, get_args
 
 from fogproof.errors import shorten
 from fogproof.pipe.blocks import Type
+from fogproof.pipe.faults import BROKEN, REFUSES
 from fogproof.text import one_line
 
 VERSION = 1
@@ -19,7 +20,11 @@ EXAMPLE = '{"fogproof": 1, "type": "float64", "columns": ["x", "x", "x", "pdf"],
 
 
 class BrokenLineError(ValueError):
-    """A line is not what was due; the message completes "the program ...\"."""
+    """A line is not what was due; the message completes "the program ...\", `cause` is the class of the fault."""
+
+    def __init__(self, message: str, cause: str = BROKEN) -> None:
+        super().__init__(message)
+        self.cause = cause
 
 
 @dataclass(frozen=True)
@@ -85,7 +90,7 @@ def require_answer(line: bytes, n: int) -> None:
     """Raise `BrokenLineError` unless a line announces n rows."""
     table = _object(line, "the line before its rows", f'{{"n": {n}}}')
     if "error" in table:
-        raise BrokenLineError(f"says: {one_line(str(table['error']))[:500]}")
+        raise BrokenLineError(f"says: {one_line(str(table['error']))[:500]}", REFUSES)
     got = table.get("n")
     if isinstance(got, bool) or got != n:
         raise BrokenLineError(f"announces {shorten(got)} rows where {n} were asked for")

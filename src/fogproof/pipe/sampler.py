@@ -87,7 +87,7 @@ class PipeSampler:
         return answer[:, 0] if channels == 1 else answer
 
     def _at(self, request: str, x: np.ndarray, columns: int) -> np.ndarray:
-        rows = x.reshape(len(x), -1)
+        rows = x.reshape(len(x), int(np.prod(self.domain.shape, dtype=int)))
         return self.program.ask(request, rows, len(x), columns, 0, self.parameters)
 
 

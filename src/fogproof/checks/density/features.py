@@ -38,12 +38,13 @@ def ranges_of_line(axis: Axis, marginal: Marginal, jacobian: Density, curve_dens
     edges = axis.uncounted(marginal.edges)
     middles = 0.5 * (edges[:-1] + edges[1:])
     with np.errstate(all="ignore"):
-        ends, inner = (curve_density(t) / jacobian(t[:, None]) for t in (edges, middles))
-    columns = np.stack([ends[:-1], inner, ends[1:]])
+        sides, inner = (curve_density(t) / jacobian(t[:, None]) for t in (edges, middles))
+    columns = np.stack([sides[:-1], inner, sides[1:]])
     finite = np.isfinite(columns)
     least = np.where(finite, columns, 0.0).min(axis=0) / _WIDER
     greatest = np.where(finite, columns, np.inf).max(axis=0) * _WIDER
-    least[[0, -1]], greatest[[0, -1]] = 0.0, np.inf  # the ends may be singular
+    for ends in (slice(1), slice(-1, None)):  # they may be singular
+        least[ends], greatest[ends] = 0.0, np.inf
     return Ranges(least, greatest)
 
 

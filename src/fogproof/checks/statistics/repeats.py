@@ -101,7 +101,7 @@ def repeats_test(name: str, prints: np.ndarray, expected: Callable[[int], float]
     expected  n -> about how many repetitions rounding explains
     """
     n, seen = len(prints), repeated(prints)
-    allowed = _SLACK * expected(n)
+    allowed = min(n, _SLACK * expected(n))  # no more than all; a claim may be infinite, or not a number
     p = poisson_at_least(seen, max(allowed, 1e-300))
     message = f"{seen} of the first {n} points repeat an earlier one; rounding explains up to about {allowed:.2g}"
     resolution = _less_than_all("probability of an undeclared atom", _smallest_atom(n, allowed, alpha))
