@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import sys
 import threading
 from collections.abc import Iterator
 from typing import NoReturn
@@ -17,7 +18,8 @@ class EndedProcessError(Exception):
 def loading() -> Iterator[None]:
     """Turn every way in which Python code ends its process into `EndedProcessError`, while other people's code is loaded.
 
-    `os._exit(0)` at the top of a file of cases would otherwise look like a run in which nothing was rejected.
+    `os._exit(0)` at the top of a file of cases would otherwise look like a run in which nothing was rejected. No bytecode is
+    written beside such code: it would hide an edit within the same second that leaves the length of the file as it was.
     """
 
     ours = threading.get_ident()
@@ -28,6 +30,7 @@ def loading() -> Iterator[None]:
         raise EndedProcessError(f"the code ends the process, exit code {status}")
 
     leave, os._exit = os._exit, ended
+    kept, sys.dont_write_bytecode = sys.dont_write_bytecode, True
     try:
         yield
     except SystemExit as error:
@@ -35,3 +38,4 @@ def loading() -> Iterator[None]:
         raise ended_by.with_traceback(error.__traceback__) from error
     finally:
         os._exit = leave
+        sys.dont_write_bytecode = kept

@@ -162,7 +162,7 @@ SAMPLERS = {
     "different values of mu": (rounded_cosine, lambda x: np.full(len(x), 0.25 / np.pi), UnitSphere(), {"dimensions": None}),
     "repeated points": (copied(1e-3), ones, LINE, {"dimensions": None}),
     "serial correlation": (
-        lambda rng, n: np.concatenate([x := rng.random((n + 1) // 2), 1 - x])[:n], ones, LINE, {"dimensions": None}),
+        lambda rng, n: np.concatenate([x := rng.random((n + 1) // 2), 2 * x % 1])[:n], ones, LINE, {"dimensions": None}),
     "cdf against the pdf": (flat, lambda x: 1 + 1e-3 * np.cos(2 * np.pi * x), LINE, {"cdf": lambda x: x}),
     "cdf against the pdf in the square": (
         lambda u: u, lambda x: 1 + 0.02 * np.cos(2 * np.pi * x[:, 0]), UnitSquare(), {"cdf": lambda x: x, "dimensions": 2}),

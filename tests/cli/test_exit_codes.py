@@ -17,6 +17,7 @@ import fogproof.cli.commands
 import fogproof.cli.list_command
 from fogproof.checks.json_values import jsonable
 from fogproof.cli.signals import _ASKING, Stopped
+from fogproof.cli.terminal import BAD_INPUT, UNREAD
 
 ROOT = Path(__file__).resolve().parents[2]
 WRONG = """
@@ -93,8 +94,7 @@ def test_whatever_is_raised_has_its_code(monkeypatch, stop, code):
 
 
 def test_the_page_knows_every_code():
-    module = fogproof.cli.commands
-    own = {module._BAD_INPUT, module._FAULT, module._UNREAD, *(128 + getattr(signal, name) for name in _ASKING)}
+    own = {BAD_INPUT, fogproof.cli.commands._FAULT, UNREAD, *(128 + getattr(signal, name) for name in _ASKING)}
     assert documented() == own | {0, 1, 3}
 
 

@@ -81,7 +81,7 @@ def test_a_report_of_ours_is_replaced_and_each_file_is_looked_at(tmp_path):
         ):
             (tmp_path / name).write_bytes(theirs)
             with pytest.raises(InvalidInputError, match=rf"{name} was not written by fogproof.*--force"):
-                prepare_folder(tmp_path)
+                prepare_folder(tmp_path, force=False)
             prepare_folder(tmp_path, force=True)
         (tmp_path / name).write_bytes(ours)
         prepare_folder(tmp_path)

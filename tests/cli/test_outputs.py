@@ -171,11 +171,17 @@ def test_a_signal_while_fogproof_is_loaded_is_a_word_and_a_code(tmp_path, name):
     search = os.pathsep.join([str(tmp_path), str(ROOT / "src")])
     command = [sys.executable, "-c", "from fogproof_command import main; main()"]
     pipe = subprocess.PIPE
-    child = subprocess.Popen(command, stdout=pipe, stderr=pipe, env={**os.environ, "PYTHONPATH": search})
+    number = getattr(signal, name)
+
+    def hearing():  # even where this test was started by nohup or in the background
+        signal.signal(number, signal.default_int_handler if name == "SIGINT" else signal.SIG_DFL)
+
+    environment = {**os.environ, "PYTHONPATH": search}
+    child = subprocess.Popen(command, stdout=pipe, stderr=pipe, env=environment, preexec_fn=hearing)
     assert child.stdout.readline() == b"loading\n"
-    child.send_signal(getattr(signal, name))
+    child.send_signal(number)
     _, said = child.communicate(timeout=30)
-    assert (child.returncode, said) == (128 + getattr(signal, name), b"fogproof: stopped\n")
+    assert (child.returncode, said) == (128 + number, b"fogproof: stopped\n")
 
 
 def test_no_more_threads_is_a_sentence(monkeypatch):

@@ -71,6 +71,7 @@ def test_a_changed_source_is_another_study(tmp_path):
         prepare(cells_of(before))
     (cell, _) = cells_of(after)
     assert float(cell.method.variance(cell.scene).value) > 1  # the new state is what runs
+    assert not list(tmp_path.rglob("*.pyc"))  # old bytecode would be taken for an edit of the same second and length
 
 
 FAULTS = {

@@ -52,7 +52,7 @@ def _arb(x):
     if not isinstance(x, mp.mpf):
         return arb(x)
     sign, mantissa, exponent, _ = x._mpf_
-    return arb(-mantissa if sign else mantissa) * arb(2) ** exponent
+    return arb(int(-mantissa if sign else mantissa)) * arb(2) ** exponent
 
 
 def phase_factor(phase, mu, analytic=False):

@@ -110,7 +110,7 @@ def test_a_stopped_run_goes_on_and_other_settings_are_refused(tmp_path):
     log.path.write_text(log.path.read_text().replace(row.status, "splendid"))
     with pytest.raises(InvalidInputError, match="'splendid' is none of killed"):
         log.read()
-    log.path.write_text("{}\n{broken")
+    log.path.write_text("{}\n{broken\n")
     with pytest.raises(InvalidInputError, match="holds no rows"):
         log.read()
 

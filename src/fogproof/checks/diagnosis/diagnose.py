@@ -20,7 +20,12 @@ from fogproof.domains import Discrete, HalfLine, Interval, RealLine, UnitHemisph
 
 _STATISTICAL = {"shape", "skipped band", "missing tail", "missing patch", "sign convention", "correlation"}
 _CONSTANT = {"normalisation", "wrong measure"}
-_SYMPTOMS = {"wrong pdf returned", "wrong weight", "edge of the uniforms"}  # that a wrong law brings along
+_SYMPTOMS = {
+    "wrong pdf returned",
+    "wrong weight",
+    "wrong formula",
+    "edge of the uniforms",
+}  # that a wrong law brings along
 _SIZES = (1 << 14, 1 << 16, 1 << 18)  # samples: as few as show the misfit plainly
 _PLAIN = 1000.0  # chi-square that is plain
 _SCREENED = 1 << 12  # samples on which all hypotheses are tried first, with a few parameters each
