@@ -30,6 +30,8 @@ _LOOKS = {1: 1 << 17, 2: 400_000}  # evenly spread points on so many axes
 _HIGH = 40.0  # times the known law's density: lower ones hold no mass that one of the points could stand for
 _COARSE = 50.0  # times the error that is never rejected: an integral known no better is not known
 _MOST = 2048  # points of one kind that are compared with the polynomials
+_PLAINLY = 2.0  # an integral above it is not 1
+_CONFIRMED = 0.1  # relative: as near as evenly spread points come to an integral that is one
 _STRANGE = 0.01  # share of the pilot that may not be as the polynomials have it
 
 
@@ -65,7 +67,8 @@ def claimed(subject: Subject, chart: Chart, points: np.ndarray, samples: int, ro
     grid = blurred(grid_of(chart, leaves, samples), chart, rounded)
     rounding = pdf_noise(subject, points) if subject.precision == "float32" else 0.0
     ranges = _ranges(chart, leaves, grid, density)
-    doubt = _doubt(subject, leaves, rounding, lambda: second_view(chart, density, pilot, work))
+    floor = (FLOOR[subject.precision] + rounding) * _height(subject, leaves.total, points)
+    doubt = _doubt(leaves, floor, lambda: second_view(chart, density, pilot, work))
     doubt = doubt or _strange(subject, chart, density, leaves, work, points)
     return Claim(chart, density, work, rounding, leaves, grid, ranges, doubt)
 
@@ -77,9 +80,19 @@ def _ranges(chart: Chart, leaves: Leaves, grid: Grid, density: Density) -> Range
     return ranges_of_line(chart.axes[0], grid.marginals[0], chart.jacobian, line)
 
 
-def _doubt(subject: Subject, leaves: Leaves, rounding: float, again: Callable[[], Leaves]) -> str:
-    """Return why two integrals of one density do not settle it, "" if they do."""
-    floor = (FLOOR[subject.precision] + rounding) * max(1.0, abs(leaves.total))  # of what is plainly not 1, relative
+def _height(subject: Subject, total: float, points: np.ndarray) -> float:
+    """Return the integral, where it is plainly not 1 and evenly spread points have it too: errors are relative to it. Else 1.
+
+    A pole whose one node at the end is 1e250 high is no such integral.
+    """
+    if not (np.isfinite(total) and abs(total) > _PLAINLY):
+        return 1.0
+    x, base = _spread(subject, points)
+    return abs(total) if abs(np.mean(subject.density(x) / base) / total - 1) < _CONFIRMED else 1.0
+
+
+def _doubt(leaves: Leaves, floor: float, again: Callable[[], Leaves]) -> str:
+    """Return why two integrals of one density do not settle it to `floor`, "" if they do."""
     words = f"quadrature gives {leaves.total:.6g} +- {leaves.total_error:.1g}"
     if not leaves.total_error <= _COARSE * floor:
         return words
