@@ -64,11 +64,14 @@ _MASKING = (
 _SPIKE = "one sample in 1200 falls on the azimuth 0 exactly (docs/findings.md)"
 
 
-def _known(name: str) -> dict[str, Any]:
-    """Return what is known of a BSDF that is rejected, as fields of its cases."""
+def _known(name: str, degrees: float) -> dict[str, Any]:
+    """Return what is known of a BSDF that is rejected, as fields of its cases.
+
+    Of the pdf of roughplastic/beckmann at 15 degrees only 5e-8 lie below the surface, at 50 degrees 3e-3.
+    """
     if name.startswith("roughdielectric") and name.endswith("whole"):
         return {"expected": "rejected", "reason": _WEIGHT}
-    if name.startswith("roughplastic"):
+    if name.startswith("roughplastic") and (name.endswith("ggx") or degrees > 15):
         return {"expected": "rejected", "reason": _BELOW_SURFACE}
     return {}
 
@@ -108,7 +111,7 @@ def cases() -> list[SamplerCase]:
                     name=f"bsdf/{name}/{degrees:g}",
                     title=f"BSDF {name}, incident at {degrees:g} degrees",
                     make=partial(MitsubaBSDF, plugin, direction(degrees, 25.0)),
-                    **_known(name),
+                    **_known(name, degrees),
                 )
             )
     return found
