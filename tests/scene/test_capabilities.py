@@ -1,5 +1,6 @@
 """No promise that cannot be kept: plan, estimator and oracle agree on every pair of a medium and a light, refused or drawn."""
 
+import re
 from itertools import product
 
 import numpy as np
@@ -119,7 +120,7 @@ def test_a_pair_is_refused_by_name_or_drawn_as_the_oracle_says(pair):
     assert refused == capabilities(scene).refused
     if refused:
         assert type(scene.medium).__name__ in refused or type(scene.light).__name__ in refused
-        with pytest.raises(UnsupportedError, match=refused[:40]):
+        with pytest.raises(UnsupportedError, match=re.escape(refused[:40])):
             estimator_for(scene)
         return
     estimator = estimator_for(scene)
