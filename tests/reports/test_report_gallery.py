@@ -45,7 +45,8 @@ def test_page_stands_alone_and_says_what_it_shows(page):
 
 
 @pytest.mark.parametrize(
-    "name", ["phase-henyey-greenstein", "samples-around-a-light", "error-against-work", "sky-and-sunset"]
+    "name",
+    ["phase-henyey-greenstein", "samples-around-a-light", "error-against-work", "sky-and-sunset", "aerial-view"],
 )
 def test_seed_decides_the_samples(name):
     first, same, other = (render_plot(gallery.drawings(seed)[name][1], name).svg for seed in (7, 7, 8))
