@@ -3,19 +3,41 @@
 A package of its own, because Python runs `fogproof/__init__.py` before any module of it.
 """
 
+import contextlib
 import os
 import signal
+
+from fogproof_command.startup import FAULT, end_of
 
 
 def main() -> None:
     """Run the command line; a signal before it listens, or after, ends the process with one word and the usual code."""
-    for name in ("SIGINT", "SIGTERM", "SIGHUP"):
+    for name in ("SIGINT", "SIGTERM", "SIGHUP", "SIGXCPU"):
         number = getattr(signal, name, None)
         if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, _stop)
-    from fogproof.cli import main as command_line
+    if (
+        _memory_is_limited()
+    ):  # each thread of OpenBLAS would reserve memory, and it waits for ever for one that cannot start
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    try:
+        from fogproof.cli import main as command_line
+    except Exception as error:
+        what, code = end_of(error)
+        own = "a fault of fogproof's own, please report it with the command: " if code == FAULT else ""
+        with contextlib.suppress(OSError):
+            os.write(2, f"fogproof: {own}{what}\n".encode("utf-8", "backslashreplace"))
+        os._exit(code)
 
     command_line()
+
+
+def _memory_is_limited() -> bool:
+    try:
+        import resource
+    except ImportError:  # not on Windows
+        return False
+    return resource.getrlimit(resource.RLIMIT_AS)[0] != resource.RLIM_INFINITY
 
 
 def _stop(number: int, _frame: object) -> None:
