@@ -265,3 +265,14 @@ def test_a_batch_that_is_gone_is_drawn_again(tmp_path, undisturbed):
     drawn(STUDY, tmp_path)
     tampered(tmp_path / FILE, "delete from batches where id = (select max(id) from batches)")
     assert drawn(STUDY, tmp_path)["digest"] == undisturbed
+
+
+@pytest.mark.parametrize(
+    "how", [os.unlink, lambda path: path.rename(path.with_name("elsewhere"))], ids=["gone", "moved"]
+)
+def test_a_store_that_loses_its_name_is_told(tmp_path, how):
+    with opened(tmp_path, STUDY) as store:
+        store.require_there()
+        how(tmp_path / FILE)
+        with pytest.raises(StoreError, match="moved or removed while the study ran"):
+            store.add([])
