@@ -6,6 +6,7 @@ A package of its own, because Python runs `fogproof/__init__.py` before any modu
 import contextlib
 import os
 import signal
+import sys
 
 from fogproof_command.startup import FAULT, end_of
 
@@ -32,12 +33,12 @@ def main() -> None:
     command_line()
 
 
-def _memory_is_limited() -> bool:
+def _limited(name: str) -> bool:
     try:
         import resource
     except ImportError:  # not on Windows
         return False
-    return resource.getrlimit(resource.RLIMIT_AS)[0] != resource.RLIM_INFINITY
+    return resource.getrlimit(getattr(resource, name))[0] != resource.RLIM_INFINITY
 
 
 def _stop(number: int, _frame: object) -> None:
