@@ -17,10 +17,7 @@ def main() -> None:
         number = getattr(signal, name, None)
         if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, _stop)
-    if (
-        _memory_is_limited()
-    ):  # each thread of OpenBLAS would reserve memory, and it waits for ever for one that cannot start
-        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    mind_limits()
     try:
         from fogproof.cli import main as command_line
     except Exception as error:
@@ -31,6 +28,15 @@ def main() -> None:
         os._exit(code)
 
     command_line()
+
+
+def mind_limits() -> None:
+    """Keep libraries from what they do not survive where the system limits memory or the size of files."""
+    if _limited("RLIMIT_AS"):  # a thread of OpenBLAS reserves memory, and is waited for for ever where it cannot start
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    if _limited("RLIMIT_FSIZE"):  # Python keeps bytecode that was cut short, and would fail by it for ever after
+        sys.dont_write_bytecode = True
+        os.environ["PYTHONDONTWRITEBYTECODE"] = "1"  # for the processes that we start
 
 
 def _limited(name: str) -> bool:

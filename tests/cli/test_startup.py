@@ -164,3 +164,14 @@ def test_a_limit_of_processor_time_is_told_every_second(monkeypatch):
     assert (listening.code, ended) == (128 + number, [])
     listening.hear(signal.SIGTERM, None)
     assert ended
+
+
+@POSIX
+def test_no_bytecode_is_left_cut_short(tmp_path):
+    """Python does not look whether all of it was written, where a limit or a full disk lets a part through."""
+    (tmp_path / "long.py").write_text("".join(f"def f{i}(): return {i}\n" for i in range(999)))
+    limits = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (9999, 9999)); "
+    start = f"{limits}from fogproof_command import mind_limits; mind_limits(); import long"
+    env = {**os.environ, "PYTHONPATH": str(tmp_path), "PYTHONDONTWRITEBYTECODE": ""}
+    subprocess.run([sys.executable, "-c", start], env=env, cwd=tmp_path, check=True)
+    assert not (tmp_path / "__pycache__").exists()
