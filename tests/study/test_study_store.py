@@ -161,7 +161,7 @@ def test_a_full_disk_keeps_what_is_there(tmp_path, undisturbed):
 def test_a_file_that_may_not_grow_ends_in_a_sentence(tmp_path):
     (tmp_path / "study.toml").write_text(toml(SMALL))
     out = subprocess.run(
-        [sys.executable, "-c", "from fogproof.cli import main; main()", "study", str(tmp_path / "study.toml"),
+        [sys.executable, "-c", "from fogproof_command import main; main()", "study", str(tmp_path / "study.toml"),
          "-o", str(tmp_path / "run")],
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (60_000, 60_000)),
         capture_output=True, text=True, timeout=1800,
