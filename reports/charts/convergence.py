@@ -96,11 +96,11 @@ class Convergence:
         lowest = min(self.curves, key=lambda curve: curve.error[-1])
         where = self.across.partition(" [")[0]
         guide = f" The long dashes fall with the power {self.slope:g}." if self.slope else ""
-        n = len(self.curves)
+        n, lowest_at = len(self.curves), f"{label(lowest.name, 90)}: {lowest.error[-1]:.2g}"
         missing = f" Without any error, and so not drawn: {', '.join(label(name, 90) for name in self.errorless)}."
         return (
-            f"Error over {where} of {n} estimator{'' if n == 1 else 's'}, both logarithmic, with {self.confidence:.0%} confidence bands. "
-            f"The lowest at its end is {label(lowest.name, 90)}: {lowest.error[-1]:.2g}.{guide}{missing if self.errorless else ''}"
+            f"Error over {where} of {n} estimator{'' if n == 1 else 's'}, both logarithmic, with {self.confidence:.0%} confidence"
+            f" bands. The lowest at its end is {lowest_at}.{guide}{missing if self.errorless else ''}"
         )
 
 

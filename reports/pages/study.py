@@ -85,7 +85,9 @@ def headline(study: StudyRecord, counts: Mapping[Status, int]) -> tuple[str, str
     if not total:
         first = "No estimator was studied"
     elif counts["rejected"]:
-        first = f"{counts['rejected']} of {total} estimators {'is' if counts['rejected'] == 1 else 'are'} {_fault(study)}"
+        first = (
+            f"{counts['rejected']} of {total} estimators {'is' if counts['rejected'] == 1 else 'are'} {_fault(study)}"
+        )
     elif left:
         first = ""
     elif study.history and study.history.worse:
@@ -151,13 +153,17 @@ def _figures(scene: SceneRecord, confidence: float) -> Iterator[tuple[str, str, 
         if entry.speed:
             milliseconds = [1e3 * timing.seconds for timing in entry.speed.counts]
             timed += _curve(entry, look, milliseconds, other, size or 1.0, False)
-    errorless = tuple(e.label for e in scene.estimators if e.counts and e.axis != "nothing" and not any(c.rmse for c in e.counts))
+    errorless = tuple(
+        e.label for e in scene.estimators if e.counts and e.axis != "nothing" and not any(c.rmse for c in e.counts)
+    )
     for name, across, title, curves, slope in (
         ("time", "processor time of one estimate [ms]", "Error against time", timed, 0.0),
         ("samples", "samples", "Error against samples", counted[0], -0.5),
         ("other", "Sobol points, or steps of a march", "Sobol points and marching", counted[1], -1.0),
     ):
-        if curves and (not slope or any(len(curve.effort) > 1 for curve in curves)):  # over counts one point tells nothing
+        if curves and (
+            not slope or any(len(curve.effort) > 1 for curve in curves)
+        ):  # over counts one point tells nothing
             yield name, title, Convergence(across, up, tuple(curves), confidence, slope, errorless if not slope else ())
 
 
