@@ -32,6 +32,5 @@ def few_values(name: str, subject: Subject, axis: str, pilot: np.ndarray, points
     moves = [np.abs(coordinate(moved) - coordinate(shown)) for moved in nudged(shown, subject.roundoff)]
     moves = [np.minimum(move, 1 - move) for move in moves]
     rounding = float(np.median(np.max(moves, axis=0))) if len(shown) else 0.0
-    if subject.precision == "float32":  # its cosines may have been rounded before they became points
-        rounding += 4 * subject.roundoff
+    rounding += 4 * subject.roundoff  # a cosine may have been rounded before it became a point
     return coarse_test(name, axis, coordinate(points), rounding, subject.bits, alpha)
