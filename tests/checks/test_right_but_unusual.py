@@ -69,9 +69,7 @@ def test_coarse_uniforms_hide_no_more_than_their_step():
     def sample(rng, n):
         return -np.log1p(-rng.integers(0, 2**12, n) / 2**12) / 1.1
 
-    verdict = check_sampler(
-        sample, lambda x: np.exp(-x), HalfLine(0), dimensions=None, samples=N, uniform_bits=12
-    )
+    verdict = check_sampler(sample, lambda x: np.exp(-x), HalfLine(0), dimensions=None, samples=N, uniform_bits=12)
     assert verdict.outcome == "rejected"
 
 
