@@ -15,6 +15,9 @@ from fogproof.reports.charts.scale import Scale
 from fogproof.reports.charts.sheet import Sheet
 from fogproof.reports.text import label
 
+FAR = 10  # an outer bin so many times as wide as all inner ones together is drawn as if it were open
+WIDEST = 100  # where the range is so many times as wide as all bins would be, were they like the median one, no axis shows them
+
 
 @dataclass(frozen=True)
 class Bins:
@@ -27,8 +30,8 @@ class Bins:
 
     HOW: ClassVar[str] = (
         "Above: how often samples fell into each bin, against what the pdf says. Where the two part, the sampler "
-        "draws too many or too few. Below: the same as a relative misfit, with the range that chance explains; a bar "
-        "beyond it is a place to look at."
+        "draws too many or too few. Below: the same as a relative misfit. Of n samples, chance explains about "
+        "2/sqrt(n p) of it in a bin of probability p; a step beyond that is a place to look at."
     )
 
     def __post_init__(self) -> None:
@@ -41,13 +44,13 @@ class Bins:
     def draw(self, sheet: Sheet) -> str:
         """Draw densities above and the relative misfit of each bin below.
 
-        An open outer bin is drawn as wide as its neighbour. Bins without width (atoms) leave no density to draw: then
-        the shares stand over the number of the bin.
+        An open outer bin is drawn as wide as its neighbour. Bins without width (atoms), or of widths that no axis can
+        show together, leave no density to draw: then the shares stand over the number of the bin.
         """
         edges, opened = closed(np.array(self.edges))
         expected, observed = np.array(self.expected), np.array(self.observed)
         width = np.diff(edges)
-        if np.all(np.isfinite(width) & (width > 0)):
+        if np.all(np.isfinite(width) & (width > 0)) and width.sum() < WIDEST * width.size * np.median(width):
             across = label(self.label) + (" (the outermost bin is open)" if opened else "")
             what = "density"
         else:
@@ -79,10 +82,14 @@ class Bins:
 
 
 def closed(edges: np.ndarray) -> tuple[np.ndarray, bool]:
-    """Return `edges` with an infinite outer one moved to a bin's width from its neighbour, and if there was one."""
+    """Return `edges` with an endless outer one moved to a bin's width from its neighbour, and if there was one.
+
+    A far tail counts as endless: to its scale all other bins would be a single line.
+    """
     edges = edges.copy()
     ends = [(0, 1, 2), (-1, -2, -3)]
-    opened = [end for end in ends if np.isinf(edges[end[0]])]
+    inner = edges[-2] - edges[1] if edges.size > 3 else np.inf
+    opened = [end for end in ends if np.isinf(edges[end[0]]) or abs(edges[end[0]] - edges[end[1]]) > FAR * inner]
     for end, first, second in opened:
         step = edges[first] - edges[second] if edges.size > 2 and np.isfinite(edges[second]) else 0.0
         edges[end] = edges[first] + (step or np.sign(edges[end]))

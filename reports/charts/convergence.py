@@ -44,13 +44,17 @@ class ErrorCurve:
 
 @dataclass(frozen=True)
 class Convergence:
-    """Curves of one scene. `across` labels the effort, `up` the error, with units; `slope` is drawn for comparison, 0: none."""
+    """Curves of one scene. `across` labels the effort, `up` the error, with units; `slope` is drawn for comparison, 0: none.
+
+    errorless  names of what has no error at all, which no logarithm shows
+    """
 
     across: str
     up: str
     curves: tuple[ErrorCurve, ...]
     confidence: float
     slope: float = 0.0
+    errorless: tuple[str, ...] = ()
 
     HOW: ClassVar[str] = (
         "Lower is better, and further left is sooner. Choose the error you can live with on the left, follow it to "
@@ -92,9 +96,11 @@ class Convergence:
         lowest = min(self.curves, key=lambda curve: curve.error[-1])
         where = self.across.partition(" [")[0]
         guide = f" The long dashes fall with the power {self.slope:g}." if self.slope else ""
+        n, lowest_at = len(self.curves), f"{label(lowest.name, 90)}: {lowest.error[-1]:.2g}"
+        missing = f" Without any error, and so not drawn: {', '.join(label(name, 90) for name in self.errorless)}."
         return (
-            f"Error over {where} of {len(self.curves)} estimators, both logarithmic, with {self.confidence:.0%} confidence bands. "
-            f"The lowest at its end is {label(lowest.name, 90)}: {lowest.error[-1]:.2g}.{guide}"
+            f"Error over {where} of {n} estimator{'' if n == 1 else 's'}, both logarithmic, with {self.confidence:.0%} confidence"
+            f" bands. The lowest at its end is {lowest_at}.{guide}{missing if self.errorless else ''}"
         )
 
 

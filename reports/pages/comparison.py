@@ -108,7 +108,7 @@ def _settings(before: RunRecord, after: RunRecord) -> list[tuple[str, Any, Any]]
 
 def _figures(pairs: list[Pair]) -> list[Picture]:
     def resolution(case: Case) -> float:
-        found = case.verdict.resolution if case.verdict is not None else None
+        found = case.verdict.resolution if case.verdict is not None and case.verdict.outcome != "rejected" else None
         return found.value if found else 0.0
 
     def kind(case: Case) -> str:

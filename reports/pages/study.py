@@ -72,6 +72,7 @@ def write_study_page(study: StudyRecord, folder: Path) -> Path:
         has_csv=(folder / "results.csv").exists(),
         headline=headline(study, counts),
         tone=_tone(study, counts),
+        rejected_for=rejected_for,
     )
     return write_file(folder / "index.html", page)
 
@@ -84,7 +85,9 @@ def headline(study: StudyRecord, counts: Mapping[Status, int]) -> tuple[str, str
     if not total:
         first = "No estimator was studied"
     elif counts["rejected"]:
-        first = f"{counts['rejected']} of {total} estimators {'is' if counts['rejected'] == 1 else 'are'} biased"
+        first = (
+            f"{counts['rejected']} of {total} estimators {'is' if counts['rejected'] == 1 else 'are'} {_fault(study)}"
+        )
     elif left:
         first = ""
     elif study.history and study.history.worse:
@@ -96,10 +99,22 @@ def headline(study: StudyRecord, counts: Mapping[Status, int]) -> tuple[str, str
         first = "Every estimator came out as expected"
     if left:
         first = f"{left} batches are drawn" + (f"; {first[0].lower()}{first[1:]}" if first else "")
-    words = {"passed": "unbiased as far as seen", "known": "biased as declared", "rejected": "biased"}
+    words = {"passed": "unbiased as far as seen", "known": "biased as declared", "rejected": "wrong"}
     parts = [f"{counts[status]} {words.get(status, status)}" for status in STATUSES if counts[status]]
     scenes = f"{len(study.scenes)} scene{'' if len(study.scenes) == 1 else 's'}"
-    return first, ", ".join([f"{study.title}: {scenes}", *parts])
+    return first, ", ".join([f"{study.title}: {scenes}" if study.title.strip() else scenes, *parts])
+
+
+def _fault(study: StudyRecord) -> str:
+    """Return what is to be said of those that were rejected: biased, where nothing else was found wrong with any."""
+    entries = [entry for scene in study.scenes for entry in scene.estimators if entry.status == "rejected"]
+    return "wrong" if any(rejected_for(entry) for entry in entries) else "biased"
+
+
+def rejected_for(entry: StudyEntry) -> str:
+    """Return the checks that rejected an estimator if none of them is about its bias, else ""."""
+    checks = [finding.check for finding in entry.findings if finding.outcome == "rejected"]
+    return "" if {"mean", "value", "random points"} & set(checks) else ", ".join(checks)
 
 
 def _tone(study: StudyRecord, counts: Mapping[Status, int]) -> str:
@@ -138,13 +153,18 @@ def _figures(scene: SceneRecord, confidence: float) -> Iterator[tuple[str, str, 
         if entry.speed:
             milliseconds = [1e3 * timing.seconds for timing in entry.speed.counts]
             timed += _curve(entry, look, milliseconds, other, size or 1.0, False)
+    errorless = tuple(
+        e.label for e in scene.estimators if e.counts and e.axis != "nothing" and not any(c.rmse for c in e.counts)
+    )
     for name, across, title, curves, slope in (
         ("time", "processor time of one estimate [ms]", "Error against time", timed, 0.0),
         ("samples", "samples", "Error against samples", counted[0], -0.5),
         ("other", "Sobol points, or steps of a march", "Sobol points and marching", counted[1], -1.0),
     ):
-        if curves:
-            yield name, title, Convergence(across, up, tuple(curves), confidence, slope)
+        if curves and (
+            not slope or any(len(curve.effort) > 1 for curve in curves)
+        ):  # over counts one point tells nothing
+            yield name, title, Convergence(across, up, tuple(curves), confidence, slope, errorless if not slope else ())
 
 
 def _curve(

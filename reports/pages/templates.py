@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import re
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +15,8 @@ from fogproof.text import p_value, visible
 
 if TYPE_CHECKING:
     import jinja2
+
+    from fogproof.checks import Verdict
 
 _STATUSES = {"surprise": "!", "rejected": "✗", "error": "⚠", "inconclusive": "?", "known": "⚑", "skipped": "–"}
 _CHANGES = {"worse": "✗", "mended": "✓", "changed": "≠", "new": "+", "gone": "–", "same": "="}
@@ -51,6 +54,8 @@ def _environment() -> jinja2.Environment:
         "sentence": sentence,
         "cases": cases,
         "duration": duration,
+        "units_kept": units_kept,
+        "smallest_p": smallest_p,
     }
     return environment
 
@@ -68,6 +73,22 @@ def number(value: float | None) -> str:
 def duration(seconds: float) -> str:
     """Return a time with a unit that suits it."""
     return in_words(seconds, "\N{NARROW NO-BREAK SPACE}")
+
+
+def smallest_p(verdict: Verdict | None) -> str:
+    """Return the smallest p-value of what rejected, or of all if nothing did; "certain" where that took no chance at all."""
+    if verdict is None:
+        return "–"
+    ps = [finding.p_value for finding in verdict.findings if finding.outcome == verdict.outcome == "rejected"]
+    known = [p for p in ps if p is not None]
+    if ps:
+        return p_value(min(known)) if known else "certain"
+    return "–" if verdict.p_value is None else p_value(verdict.p_value)
+
+
+def units_kept(text: str) -> str:
+    """Return `text` with every unit of time and per cent kept on the line of its number."""
+    return re.sub(r"(?<=\d) (?=%|(?:ns|µs|ms|s|min|h)\b)", "\N{NARROW NO-BREAK SPACE}", text)
 
 
 def grouped(value: float) -> str:

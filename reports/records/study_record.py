@@ -79,7 +79,7 @@ class TargetRecord:
     """What a relative error takes; None if it is not reached: `why` says how near the last count comes, in `low` seconds."""
 
     error: float
-    how: Literal["measured", "less-than", "extrapolated", "not-reached", "never"]
+    how: Literal["measured", "less-than", "extrapolated", "not-reached", "rises", "never"]
     why: str
     samples: float | None
     seconds: float | None

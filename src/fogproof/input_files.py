@@ -71,7 +71,7 @@ def read_text(path: str | Path, what: str) -> str:
             size = f"it has {size_of(file)} bytes, more than {TEXT}"
             raise InvalidInputError(f"cannot read {what} {path}: {size}", str(path))
         try:
-            return file.read(TEXT).decode("utf-8").replace("\r\n", "\n")
+            return file.read(TEXT).decode("utf-8-sig").replace("\r\n", "\n")
         except OSError as error:
             raise InvalidInputError(f"cannot read {what} {path}: {error.strerror or error}", str(path)) from None
         except UnicodeDecodeError:

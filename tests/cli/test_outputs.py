@@ -68,6 +68,8 @@ def test_a_named_output_may_be_a_link_or_a_pipe(tmp_path):
 def test_a_full_disk_leaves_what_was_there(tmp_path, monkeypatch, name):
     import resource
 
+    if name == "a.exr":
+        pytest.importorskip("OpenEXR", reason="python -m pip install 'fogproof[images]'")
     path = tmp_path / name
     path.write_bytes(b"before")
     pixels = {"Y": np.random.default_rng(1).random((64, 64))}

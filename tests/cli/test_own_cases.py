@@ -7,13 +7,12 @@ import time
 from functools import partial
 
 import pytest
-from click.testing import CliRunner
+from fuzz_commands import Run, here
 
 from fogproof import verify
 from fogproof.catalogue import SamplerCase, all_cases, own
 from fogproof.checks.limits import within
 from fogproof.checks.streams import batch_generator
-from fogproof.cli.commands import cli
 from fogproof.errors import FogproofError, InvalidInputError
 from fogproof.verify import Result, running
 
@@ -109,13 +108,12 @@ def test_alpha_is_shared_with_the_file(tmp_path):
 
 def test_the_command_line_takes_a_file(tmp_path):
     path = written(tmp_path, MINE)
-    runner = CliRunner()
-    out = runner.invoke(cli, ["list", path, "--json"], standalone_mode=False)
-    rows = [json.loads(line) for line in out.stdout.splitlines()]  # nothing that the file prints is in between
+    end = here(Run(["list", path, "--json"]))
+    rows = [json.loads(line) for line in end.out.splitlines()]  # nothing that the file prints is in between
     assert [row["name"] for row in rows][:2] == ["my_cases/right", "my_cases/wrong"]
-    out = runner.invoke(cli, ["verify", f"{path}::right", "--json", "--seed", "1"], standalone_mode=False)
-    assert json.loads(out.stdout)["cases"][0]["status"] == "passed"
-    assert out.return_value == 0
+    end = here(Run(["verify", f"{path}::right", "--json", "--seed", "1"]))
+    assert json.loads(end.out)["cases"][0]["status"] == "passed"
+    assert end.code == 0
 
 
 FAULTS = {

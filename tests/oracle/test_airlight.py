@@ -137,6 +137,7 @@ def test_a_table_is_integrated_between_its_kinks():
 
 def test_a_water_drop():
     """Lorenz-Mie, 10 um: against 2000 Gauss-Legendre nodes in the angle seen from the light."""
+    pytest.importorskip("miepython", reason="python -m pip install 'fogproof[mie]'")
     drop, sigma, a, b = Mie(10e-6, 550e-9, 1.33), 0.3, -5.0, 5.0
     reference = airlight_integral(sigma, 1.0, a, b, drop)
     x, weights = np.polynomial.legendre.leggauss(2000)

@@ -80,3 +80,11 @@ def test_faulty_record_is_named_and_nothing_written(tmp_path):
     with pytest.raises(InvalidInputError, match="after: cases is missing"):
         write_comparison(record([]), {key: value for key, value in record([]).items() if key != "cases"}, tmp_path)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_what_was_certain_is_not_given_a_p_value_or_a_resolution(tmp_path):
+    before, after = run(a="passed"), run(a="rejected")
+    for finding in after["cases"][0]["verdict"]["findings"]:
+        finding["p_value"] = None if finding["outcome"] == "rejected" else finding["p_value"]
+    assert "→ certain" in Page(write_comparison(before, after, tmp_path)).words
+    assert not list((tmp_path / "figures").glob("comparison-resolution*"))

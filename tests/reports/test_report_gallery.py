@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import re
 import struct
 from xml.etree import ElementTree
@@ -17,6 +18,8 @@ from fogproof.reports.gallery.plots import render_plot
 from fogproof.reports.gallery.sky import SkyAndSunset
 
 NAMES = sorted(gallery.drawings(0))
+if importlib.util.find_spec("miepython") is None:
+    NAMES.remove("phase-mie")
 
 
 @pytest.fixture(scope="module")

@@ -229,6 +229,20 @@ def test_cause_place_and_size_of_a_misfit_are_told(tmp_path):
         assert text in words
 
 
+def test_page_tells_the_diagnosis_what_is_unchecked_and_how_sure_it_is(tmp_path):
+    found = [Finding(name, "rejected", "it is wrong") for name in ("normalisation", "domain", "scan", "ends")]
+    told = Verdict(tuple(found), 1e-6, 10, 1, cause="normalisation", diagnosis="a factor .98", unchecked=("weights",))
+    one = case("a", "rejected", title="") | {"verdict": told.to_dict()}
+    words = " ".join(Page(write_report(record([one]), tmp_path)).words.split())
+    for text in (
+        "Likely cause: normalisation; a factor .98",
+        "Unchecked: weights",
+        "certain normalisation, domain and 2 more",
+    ):
+        assert text in words
+    assert "(blank)" not in words
+
+
 def test_page_of_known_finding_leaves_its_p_values_out(tmp_path):
     write_report(record([case("a", "known")]), tmp_path)
     assert not (tmp_path / "figures" / "p-values.svg").exists()

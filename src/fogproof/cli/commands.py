@@ -106,7 +106,9 @@ def _run(arguments: list[str] | None) -> int:
         error.show(words)
         code = _say(words.getvalue().rstrip("\n"), BAD_INPUT, "")
     except (click.Abort, KeyboardInterrupt) as stop:
-        code = _say("stopped", code_of(stop.__cause__ or stop))  # click makes an Abort of the signal's exception
+        code = _say(
+            "stopped", code_of(stop.__cause__ or stop.__context__ or stop)
+        )  # click makes an Abort of the signal's
     except BrokenPipeError:
         silence(sys.stdout)
         code = UNREAD

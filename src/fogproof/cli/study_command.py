@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import shlex
 import sys
 from pathlib import Path
@@ -130,16 +131,26 @@ def _cells(estimator: dict[str, Any], targets: int) -> list[str]:
         if estimator["status"] == "passed" and estimator["axis"] != "samples"
         else _UNBIASED[estimator["status"]]
     )
+    checks = [finding["check"] for finding in estimator["findings"] if finding["outcome"] == "rejected"]
+    if estimator["status"] == "rejected" and not {"mean", "value", "random points"} & set(checks):
+        unbiased = f"WRONG {checks[0]}"
     bias = f"{estimator['bias']['value']:+.1e}" if estimator["bias"] else ""
     times = [_time(target) for target in speed["targets"]] if speed else []
-    relative = f"{speed['relative']['value']:.3g}" if speed and speed["relative"] else ""
+    relative = _relative(speed["relative"]) if speed and speed["relative"] else ""
     words = [one_line(estimator["name"]), unbiased, bias, f"{order['value']:.2f}" if order else ""]
     return [*words, *(times or [""] * targets), relative]
 
 
+def _relative(speed: dict[str, Any]) -> str:
+    low, high = float(speed["low"]), float(speed["high"])
+    if low > 0 and math.isfinite(high):
+        return f"{speed['value']:.3g}"
+    return f"< {high:.3g}" if math.isfinite(high) else f"> {low:.3g}" if low > 0 else ""
+
+
 def _time(target: dict[str, Any]) -> str:
-    if target["how"] == "never":
-        return "never"
+    if target["how"] in ("never", "rises"):
+        return str(target["how"])
     if target["seconds"] is None:
         return f"> {duration(target['low'])}"
     return {"less-than": "< ", "extrapolated": "~ "}.get(target["how"], "") + duration(target["seconds"])

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import difflib
 import json
 import math
 import tomllib
@@ -67,7 +68,7 @@ def read_fields(types: dict[str, Any], data: Any, origin: str) -> dict[str, Any]
         with np.errstate(all="ignore"):  # a length that overflows is judged as the infinity that it is
             model = input_model(types).model_validate_json(json.dumps(_with_infinities(data)))
     except pydantic.ValidationError as error:
-        raise _complaint(error, data, origin) from None
+        raise _complaint(error, data, origin, tuple(types)) from None
     return {name: getattr(model, name) for name in types}
 
 
@@ -95,11 +96,23 @@ def _with_infinities(value: Any) -> Any:
     return {"inf": math.inf, "-inf": -math.inf}.get(value, value) if isinstance(value, str) else value
 
 
-def _complaint(error: Any, data: Any, origin: str) -> InvalidInputError | InvalidValueError:
+_UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
+
+
+def _complaint(error: Any, data: Any, origin: str, known: tuple[str, ...]) -> InvalidInputError | InvalidValueError:
     """Turn pydantic's report into one sentence; the first fault is told, the others are counted."""
     faults = {_place(fault, data): fault for fault in reversed(error.errors())}
-    place, fault = list(faults.items())[-1]
-    more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
+    place, fault = min(reversed(faults.items()), key=lambda item: item[1]["type"] not in _UNKNOWN)
+    others = [other for other in reversed(faults) if other != place]
+    beside = place.rpartition(".")[0]
+    absent = [other for other in others if other.rpartition(".")[0] == beside and "missing" in faults[other]["type"]]
+    if fault["type"] in _UNKNOWN and absent:  # what is missing beside a key that nobody knows is what was meant
+        others = [other for other in others if other not in absent]
+        more = f", and {', '.join(absent)} {'is' if len(absent) == 1 else 'are'} missing"
+    else:
+        meant = difflib.get_close_matches(place, known, 1) if fault["type"] in _UNKNOWN else []
+        more = f"; did you mean {meant[0]}?" if meant else ""
+    more += f" (and {len(others)} more)" if others else ""
     cause = fault.get("ctx", {}).get("error")
     if isinstance(cause, InvalidValueError):
         return cause.inside(place, origin)

@@ -34,7 +34,7 @@ from fogproof.scene.phase import KINDS as PHASES
 from fogproof.scene.phase import PhaseFunction
 from fogproof.scene.shapes import KINDS as SHAPES
 from fogproof.strategies.fields import FIELDS
-from fogproof.strategies.kinds import of_kind
+from fogproof.strategies.kinds import known, of_kind
 from fogproof.strategies.values import directions, points, positive
 
 __all__ = ["lights", "media", "phase_functions", "rays", "scenes", "shapes"]
@@ -48,8 +48,8 @@ def _of(table: dict[str, type], kinds: tuple[str, ...]) -> st.SearchStrategy[Any
 
 
 def phase_functions(*kinds: str, mixtures: bool = True) -> st.SearchStrategy[PhaseFunction]:
-    """Draw phase functions, of the given kinds or of all; |g| up to 0.95."""
-    return _of(PHASES, kinds or tuple(kind for kind in PHASES if mixtures or kind != "mixture"))
+    """Draw phase functions, of the given kinds or of all that the installed packages can compute; |g| up to 0.95."""
+    return _of(PHASES, kinds or tuple(kind for kind in PHASES if known(kind) and (mixtures or kind != "mixture")))
 
 
 def media(*kinds: str) -> st.SearchStrategy[Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import importlib.util
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,14 @@ from fogproof.scene.phase import Mixture, Tabulated
 from fogproof.strategies.fields import FIELDS
 from fogproof.strategies.own_fields import OWN
 from fogproof.strategies.values import numbers
+
+_NEEDS = {"mie": "miepython", "polydisperse-mie": "miepython"}
+"""kind -> the package without which the oracle says nothing of it."""
+
+
+def known(kind: str) -> bool:
+    """Return whether the oracle can tell of this kind here; what it cannot is drawn only where it is asked for by name."""
+    return kind not in _NEEDS or importlib.util.find_spec(_NEEDS[kind]) is not None
 
 
 def _tables() -> st.SearchStrategy[Tabulated]:
@@ -27,7 +36,7 @@ def _tables() -> st.SearchStrategy[Tabulated]:
 
 
 def _mixtures() -> st.SearchStrategy[Mixture]:
-    lobes = st.one_of([st.from_type(made) for kind, made in PHASES.items() if kind != "mixture"])
+    lobes = st.one_of([st.from_type(made) for kind, made in PHASES.items() if kind != "mixture" and known(kind)])
 
     @st.composite
     def mixture(draw: st.DrawFn) -> Mixture:

@@ -46,8 +46,8 @@ def run_study(
     before = None if against is None else read_results(Path(against))
     cells = cells_of(study)
     batches = batches_of(cells)
+    prepare(cells)  # what cannot run leaves no folder behind that another study, the mended one, would not fit into
     with opened(folder, study, salvage) as store:
-        prepare(cells)
         done = store.done()
         missing = len(batches) - len(done)
         slots = 0

@@ -102,6 +102,8 @@ def _noisy_order(counts: np.ndarray, errors: np.ndarray, freedom: np.ndarray) ->
         p = float(chdtrc(len(x) - 2, float(np.sum(weight[first:] * residuals**2))))
         reach = Z / math.sqrt(spread)
         if p >= _MISFIT and reach <= _COARSE:
+            if abs(slope) < reach:  # level: it neither falls nor grows
+                return None
             return _order(counts[first:], -slope, reach, residuals, p)
     return None
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from fogproof.checks.statistics.moments import Moments
 from fogproof.contracts import Reference
-from fogproof.study.aggregate import Level
+from fogproof.study.aggregate import Level, pooled
 from fogproof.study.cells import Cell
 from fogproof.study.convergence import Estimate, Floor
 from fogproof.study.judgement import Judged
@@ -41,6 +41,7 @@ def error_curve(
         cell.method.axis == "samples"
         and cell.points == "random"
         and judged.outcome != "rejected"
+        and not cell.method.bias
         and not judged.infinite
     ):
         exact = variance is not None and 0 <= float(variance.error) < 1e-6 * float(variance.value) < math.inf
@@ -48,16 +49,33 @@ def error_curve(
             float(variance.value) if exact and variance is not None else data.variance, spread(data), exact
         )
         law = law if data.m2 > 0 and _follows(law.value, cell, levels, errors, data) else None
-    return ErrorOverTime(counts, errors, times, law, stays)
+    return ErrorOverTime(counts, errors, times, law, stays, cell.method.axis != "samples")
 
 
-def stays_for_good(judged: Judged, bias: Estimate | None, floor: Floor | None) -> float:
-    """Return the error that is there for good: a march's floor where it has met it, or the least bias a rejected one can have."""
+def stays_for_good(
+    judged: Judged, bias: Estimate | None, floor: Floor | None, levels: Sequence[Level], data: Moments
+) -> float:
+    """Return the error that is there for good: a march's floor where it has met it, or the least bias a rejected one can have.
+
+    A bias that is not the same at all counts may fall further: nothing of it is there for good.
+    """
     if floor is not None:
         return floor.error if floor.reached else 0.0
-    if judged.outcome != "rejected" or bias is None or not bias.low * bias.high > 0:
+    if judged.outcome != "rejected" or bias is None or not bias.low * bias.high > 0 or not _alike(levels, data):
         return 0.0
     return min(abs(bias.low), abs(bias.high))
+
+
+def _alike(levels: Sequence[Level], data: Moments) -> bool:
+    """Return whether the means at all counts may be one and the same."""
+    from scipy.special import chdtrc
+
+    means = np.array([pooled(level.rows).mean for level in levels])
+    n = np.array([pooled(level.rows).n for level in levels])
+    if data.m2 <= data.n * (4 * np.finfo(float).eps * data.mean) ** 2:
+        return bool(np.ptp(means) <= 1e-12 * np.abs(means).max())
+    statistic = float(np.sum(n * (means - data.mean) ** 2)) / data.variance
+    return len(means) < 2 or float(chdtrc(len(means) - 1, statistic)) >= _NO_LAW
 
 
 def _follows(variance: float, cell: Cell, levels: Sequence[Level], errors: Sequence[Estimate], data: Moments) -> bool:
@@ -66,8 +84,13 @@ def _follows(variance: float, cell: Cell, levels: Sequence[Level], errors: Seque
 
     freedom = np.array([degrees_of_freedom(cell, level, data) for level in levels])
     squares = np.array([e.value**2 * level.count / variance for e, level in zip(errors, levels, strict=True)])
+    one_each = min(
+        2 * len(levels) * min(float(chdtr(f, f * s)), float(chdtrc(f, f * s)))
+        for f, s in zip(freedom, squares, strict=True)
+    )
     statistic, total = float(np.sum(freedom * squares)), float(np.sum(freedom))
-    return 2 * min(float(chdtr(total, statistic)), float(chdtrc(total, statistic))) >= _NO_LAW
+    together = 2 * min(float(chdtr(total, statistic)), float(chdtrc(total, statistic)))
+    return min(one_each, together) >= _NO_LAW
 
 
 def reaches_of(curve: ErrorOverTime, value: float, hidden: float) -> tuple[Reach, ...]:

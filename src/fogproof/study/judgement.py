@@ -22,10 +22,12 @@ from fogproof.study.cells import Cell
 EPS = float(np.finfo(float).eps)
 ROUNDING = 1e-12
 """Relative difference to the reference that sums in another order may make."""
+BY_BIAS = frozenset({"mean", "value", "random points"})
+"""The checks that a bias fails."""
 _NEARLY_NORMAL = 0.01
 """Excess kurtosis of a replicate's mean below which the scatter of replicates is tested by chi-square's law."""
 _SUSPICIOUS = 0.05
-"""Share of one realisation in the sum of squares that is worth a warning."""
+"""Share of one realisation in the sum of squares that is worth a warning, where it is twice that of a normal law's largest."""
 
 
 @dataclass(frozen=True)
@@ -41,6 +43,11 @@ class Judged:
     findings: tuple[Finding, ...]
     warning: str
     times_as_many: float = 1.0
+
+    @property
+    def wrong(self) -> frozenset[str]:
+        """The checks that rejected."""
+        return frozenset(f.check for f in self.findings if f.outcome == "rejected")
 
     @property
     def infinite(self) -> bool:
@@ -211,7 +218,9 @@ def _heavy(levels: Sequence[Level], data: Moments, value: float) -> str:
     index, spread = tail.index()
     if tail.suspect():
         return f"infinite variance suspected: the tail has index {index:.2g} +- {spread:.1g}, where 2 is the least"
-    if data.largest_share > _SUSPICIOUS:
+    if data.largest_share > max(
+        _SUSPICIOUS, 4 * math.log(max(data.n, 2)) / data.n
+    ):  # of n normal ones: about 2 ln(n) / n
         return f"heavy tail: one realisation of {data.n} has {data.largest_share:.0%} of the variance"
     return ""
 

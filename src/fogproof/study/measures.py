@@ -15,11 +15,14 @@ from fogproof.study.aggregate import Level, pooled
 from fogproof.study.cells import Cell
 from fogproof.study.convergence import Estimate, Floor, Order, Z, floor_of, order_of, rmse
 from fogproof.study.error_curve import error_curve, reaches_of, stays_for_good
-from fogproof.study.judgement import Judged, inherited, judge, out_of_range, resolution_of
+from fogproof.study.judgement import BY_BIAS, Judged, inherited, judge, out_of_range, resolution_of
 from fogproof.study.methods.table import kind_of, options_of
 from fogproof.study.reaching import Reach
 from fogproof.study.scatter import degrees_of_freedom, kurtosis, spread
 from fogproof.study.speed import Times, times_of
+
+_LEVEL = 0.2
+"""An error of which so much stays for good is on its way to a level, not down a power of the count."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,16 +36,16 @@ class Measured:
 
     @property
     def status(self) -> str:
-        """`passed`, `known` (rejected, as declared), `rejected` or `inconclusive`."""
+        """`passed`, `known` (biased, as declared, whether that is seen or not), `rejected` or `inconclusive`."""
         outcome = self.judged.outcome
-        if outcome == "rejected":
-            return "known" if self.cell.method.expected == "rejected" else "rejected"
-        return "passed" if outcome == "not rejected" else "inconclusive"
+        if self.cell.method.expected == "rejected" and (outcome == "rejected" or self.cell.method.axis == "samples"):
+            return "known" if self.judged.wrong <= BY_BIAS else "rejected"
+        return {"rejected": "rejected", "not rejected": "passed"}.get(outcome, "inconclusive")
 
     @property
     def unbiased(self) -> bool:
-        """Whether it came out unbiased as far as could be seen."""
-        return self.judged.outcome == "not rejected"
+        """Whether it came out unbiased as far as could be seen, and does not say otherwise."""
+        return self.status == "passed"
 
 
 def measure(cell: Cell, levels: Sequence[Level], alpha: float, twin: Measured | None = None) -> Measured:
@@ -57,7 +60,9 @@ def measure(cell: Cell, levels: Sequence[Level], alpha: float, twin: Measured | 
     errors, times = [_rmse(cell, level, data, error) for level in levels], times_of(levels)
     order, floor = _fall(cell, levels, errors, data, value, error)
     bias = _bias(cell, levels, data, error)
-    stays = stays_for_good(judged, bias, floor)
+    stays = stays_for_good(judged, bias, floor, levels, data)
+    if order is not None and floor is None and stays > _LEVEL * errors[-1].value:
+        order = None  # it falls to its bias, and no further
     curve = error_curve(cell, levels, errors, times, data, variance, judged, stays)
     reaches = () if curve is None else reaches_of(curve, abs(value), error)
     record = {

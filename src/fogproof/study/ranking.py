@@ -7,7 +7,10 @@ from dataclasses import asdict
 from itertools import groupby
 from typing import Any
 
+from fogproof.study.convergence import Estimate
+from fogproof.study.judgement import BY_BIAS
 from fogproof.study.measures import Measured
+from fogproof.study.methods.own import Own
 from fogproof.study.reaching import TARGETS, Reach
 from fogproof.text import duration
 
@@ -29,6 +32,7 @@ def ranked(scene: Sequence[Measured]) -> dict[str, Any]:
         speed = m.record["speed"]
         if speed is not None:
             relative = None if first is None or not m.reaches else first.reaches[_AT].relative_to(m.reaches[_AT])
+            relative = Estimate(1.0, 1.0, 1.0) if m is first else relative
             speed["rank"] = order.index(m) + 1 if m in reaching else None
             speed["relative"] = None if relative is None else asdict(relative)
     return {
@@ -68,25 +72,31 @@ def _sentences(scene: Sequence[Measured]) -> list[str]:
         ]
     biased = list(dict.fromkeys(m for m in firsts if not m.unbiased))
     if biased:
-        said += [f"{m.record['label']} {_why_not_unbiased(m)}." for m in biased]
+        said += [f"{_first(m)} {_why_not_unbiased(m)}." for m in biased]
         said += _soonest([m for m in scene if m.unbiased], "Of the unbiased, ")
     said += _compared(scene)
     said += [_marched(m) for m in scene if m.cell.method.axis == "steps" and m.record["counts"]]
     open_ = [_inside(m) for m in scene if m.status == "inconclusive" and m.cell.points == "random" and m not in biased]
     if open_:
         said.append(f"Not judged unbiased yet: {_listed(open_)}.")
-    wrong = [_inside(m) for m in scene if m.status == "rejected"]
+    wrong = [_rejected(m) for m in scene if m.status == "rejected"]
     if wrong:
         said.append(f"Rejected: {_listed(wrong)}.")
     return said
 
 
 def _firsts(scene: Sequence[Measured]) -> list[Measured | None]:
-    """Return who is soonest to each of `TARGETS`."""
+    """Return who is soonest to each of `TARGETS`: the same as to the one before, unless another is shown to be sooner."""
     found: list[Measured | None] = []
+    before: Measured | None = None
     for target in range(len(TARGETS)):
         there = [m for m in scene if _reaches(m, target)]
-        found.append(min(there, key=lambda m: m.reaches[target].times.estimate.value, default=None))
+        first = min(there, key=lambda m: m.reaches[target].times.estimate.value, default=None)
+        if first is not None and before is not None and _reaches(before, target):
+            ratio = before.reaches[target].relative_to(first.reaches[target])
+            first = before if ratio is None or not ratio.low > 1 else first
+        found.append(first)
+        before = first
     return found
 
 
@@ -107,11 +117,12 @@ def _soonest(scene: Sequence[Measured], lead: str) -> list[str]:
                 f"{_inside(first)} is soonest: {', '.join(f'{_listed(e)} in {time}' for time, e in told.items())}"
             )
     text = lead + "; ".join(parts)
-    said = [f"{text if ':' in text.split()[0] else text[:1].upper() + text[1:]}."] if parts else []
+    said = [f"{text[:1].upper() + text[1:]}."] if parts else []
     for waiting, targets in groupby(untold, key=lambda pair: pair[1]):
         errors = _listed([_percent(TARGETS[target]) for target, _ in targets])
         late = f"{_listed([_inside(m) for m in waiting])} {'is' if len(waiting) == 1 else 'are'} not there yet"
-        said.append(f"Who is soonest to {errors} these counts do not tell: {late}.")
+        asked = f"{lead}who" if lead else "Who"
+        said.append(f"{asked} is soonest to {errors} these counts do not tell: {late}.")
     return said
 
 
@@ -151,12 +162,12 @@ def _compared(scene: Sequence[Measured]) -> list[str]:
 
 def _marched(m: Measured) -> str:
     if m.unbiased:
-        return f"{m.record['label']} is exact here."
+        return f"{_first(m)} is exact here."
     order = m.record["order"]
     if order is None:
         return f"The order of {_inside(m)} cannot be seen within these counts."
     within = f"{order['value']:.2f} [{order['low']:.2f}, {order['high']:.2f}]"
-    return f"{m.record['label']} is of order {within} from {order['first']} steps on."
+    return f"{_first(m)} is of order {within} from {order['first']} steps on."
 
 
 def _time(reach: Reach) -> str:
@@ -175,9 +186,23 @@ def _percent(error: float) -> str:
 
 
 def _inside(m: Measured) -> str:
-    """Return a label inside a sentence; it begins with a plain word, unless somebody named it otherwise."""
+    """Return a label inside a sentence; our own begin with a plain word, those that somebody else wrote stand in quotes."""
     label: str = m.record["label"]
+    if isinstance(m.cell.method, Own):
+        return f"“{label}”"
     return label if label[1:2].isupper() else label[:1].lower() + label[1:]
+
+
+def _first(m: Measured) -> str:
+    """Return a label that begins a sentence."""
+    text = _inside(m)
+    return text[:1].upper() + text[1:]
+
+
+def _rejected(m: Measured) -> str:
+    """Return the label of what was rejected, and of what it was rejected for if not for a bias."""
+    wrong = m.judged.wrong
+    return _inside(m) if wrong & BY_BIAS else f"{_inside(m)} ({', '.join(sorted(wrong))})"
 
 
 def _listed(items: Sequence[str]) -> str:

@@ -1,7 +1,8 @@
 """How long an estimator takes to an error: read off the measured curve of error against time, fixed cost and bias included.
 
-The error of independent samples without bias is known at every count, sqrt(variance / count), and goes on like that. That of Sobol
-points, of marching and of what is biased is taken between the counts that were measured, by a power law, and nowhere else.
+The error of independent samples without bias is known at every count, sqrt(variance / count), and goes on like that; its time
+beyond the last count is told where the counts tell it (`growth`). The error of Sobol points, of marching and of what is biased is
+taken between the counts that were measured, by a power law, and nowhere else.
 """
 
 from __future__ import annotations
@@ -14,11 +15,12 @@ from typing import Literal
 import numpy as np
 
 from fogproof.study.convergence import Estimate, Z
+from fogproof.study.growth import power_at, time_at, time_beyond
 from fogproof.study.speed import Times, scaled
 
 TARGETS = (0.01, 0.001, 0.0001)
 """Relative root mean square errors whose time is told."""
-How = Literal["measured", "less-than", "extrapolated", "not-reached", "never"]
+How = Literal["measured", "less-than", "extrapolated", "not-reached", "rises", "never"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +30,7 @@ class ErrorOverTime:
     counts    (levels,) samples or steps, rising
     errors    RMSE at each, bias included, in the unit of the quantity; intervals of no width where nothing is random
     stays     what no number of samples or steps takes away: a bias that was shown, rounding
+    smooth    whether nothing is random: then an error may be small by a lucky crossing, and grow again
     times     of one estimate at each
     law       the variance of one realisation with its interval where the error is sqrt(variance / count); None elsewhere
     """
@@ -37,6 +40,7 @@ class ErrorOverTime:
     times: Sequence[Times]
     law: Estimate | None = None
     stays: float = 0.0
+    smooth: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +49,8 @@ class Reach:
 
     error    relative to the reference
     how      "measured", between two counts; "less-than": the first count is better already, and its time is told;
-             "extrapolated" beyond the last; "not-reached" by the last, whose time is told; "never"
+             "extrapolated" beyond the last; "not-reached" by the last, whose time is told, or beyond it in a time that the counts
+             do not tell; "rises" where fewer samples are surely near enough and the last are not; "never"
     why      of what was not reached, in words
     samples  or steps; None if not reached
     times    of one estimate with so many; at the last count, where that does not reach it
@@ -62,7 +67,7 @@ class Reach:
     @property
     def reached(self) -> bool:
         """Whether a time is known."""
-        return self.how not in ("not-reached", "never")
+        return self.how not in ("not-reached", "rises", "never")
 
     @property
     def seconds(self) -> Estimate:
@@ -104,10 +109,12 @@ def reach_of(curve: ErrorOverTime, target: float, error: float, hidden: float = 
     while first > 0 and size[first - 1] <= target:
         first -= 1
     if first == len(size):
+        said = f"{int(curve.counts[-1])} leave {size[-1] / target * error:.2g}"
+        near = [int(n) for n, e in zip(curve.counts, curve.errors, strict=True) if e.high <= target]
+        if near and curve.errors[-1].low > target and not curve.smooth:
+            return Reach(error, "rises", f"{said}, {near[-1]} are nearer", None, curve.times[-1])
         how = "never" if curve.stays > target else "not-reached"
-        return Reach(
-            error, how, f"{int(curve.counts[-1])} leave {size[-1] / target * error:.2g}", None, curve.times[-1]
-        )
+        return Reach(error, how, said, None, curve.times[-1])
     if first == 0:
         above = _noise(curve, 0, 1, 0.0)[1] if len(size) > 1 and curve.errors[0].high > target else 0.0
         how = "less-than" if curve.counts[0] > 1 else "measured"  # there is nothing less than one
@@ -115,7 +122,10 @@ def reach_of(curve: ErrorOverTime, target: float, error: float, hidden: float = 
     before, after = size[first - 1], max(size[first], 1e-300)
     share = math.log(before / target) / math.log(before / after)
     at = float(curve.counts[first - 1] * (curve.counts[first] / curve.counts[first - 1]) ** share)
-    return Reach(error, "measured", "", at, _times_at(curve, at), _noise(curve, first - 1, first, share))
+    when = time_at(curve.counts, curve.times, at)
+    below, above = _noise(curve, first - 1, first, share)
+    noise = math.hypot(below, when.bend[0]), math.hypot(above, when.bend[1])
+    return Reach(error, "measured", "", at, when.times, noise)
 
 
 def _noise(curve: ErrorOverTime, a: int, b: int, share: float) -> tuple[float, float]:
@@ -127,7 +137,11 @@ def _noise(curve: ErrorOverTime, a: int, b: int, share: float) -> tuple[float, f
     if not 0 < two.value < one.value:
         return math.inf, math.inf
     count = curve.counts[a] * (curve.counts[b] / curve.counts[a]) ** share
-    needs = math.log(curve.counts[b] / curve.counts[a]) / math.log(one.value / two.value) * _growth(curve, count)
+    needs = (
+        math.log(curve.counts[b] / curve.counts[a])
+        / math.log(one.value / two.value)
+        * power_at(curve.counts, curve.times, count)
+    )
     reaches = [(math.log(e.value / e.low) if e.low > 0 else math.inf, math.log(e.high / e.value)) for e in (one, two)]
     below, above = (a if share == 0 else (1 - share) * a + share * b for a, b in zip(*reaches, strict=True))
     return (needs * below, needs * above) if needs else (0.0, 0.0)
@@ -137,35 +151,16 @@ def _by_the_law(curve: ErrorOverTime, law: Estimate, target: float, error: float
     needed = law.value / target**2
     if needed <= curve.counts[0]:
         return Reach(error, "less-than", "", float(curve.counts[0]), curve.times[0])
-    how: How = "measured" if needed <= curve.counts[-1] else "extrapolated"
-    times = _times_at(curve, needed)
+    beyond = needed > curve.counts[-1]
+    at = (time_beyond if beyond else time_at)(curve.counts, curve.times, needed)
+    if isinstance(at, str):
+        return Reach(error, "not-reached", at, None, curve.times[-1])
     unsure = 2 * hidden / target
-    grows = _growth(curve, needed)
+    grows = power_at(curve.counts, curve.times, needed)
     below = grows * (math.log(law.value / law.low) + unsure) if law.low > 0 else math.inf
     above = grows * (math.log(law.high / law.value) + unsure)
-    return Reach(error, how, "", needed, times, (below, above))
-
-
-def _growth(curve: ErrorOverTime, count: float) -> float:
-    """Return the power with which the time grows around a count."""
-    a, b = (_times_at(curve, count * factor).estimate.value for factor in (0.99, 1.01))
-    return max(math.log(b / a) / math.log(1.01 / 0.99), 0.0) if a > 0 and b > 0 else 1.0
-
-
-def _times_at(curve: ErrorOverTime, count: float) -> Times:
-    """Return the time of an estimate at a count: a fixed cost and so much a sample, between two counts and beyond the last."""
-    counts = curve.counts
-    if len(counts) == 1 or count in (counts[0], counts[-1]):
-        k = 0 if count == counts[0] else -1
-        return Times(curve.times[k].seconds * (count / counts[k]))
-    k = min(max(int(np.searchsorted(counts, count, side="right")), 1), len(counts) - 1)
-    a, b = curve.times[k - 1].seconds, curve.times[k].seconds
-    if len(a) != len(b):
-        a, b = (np.array([Times(s).estimate.value]) for s in (a, b))
-    each = (b - a) / (counts[k] - counts[k - 1])
-    if count > counts[k]:
-        each = np.where(each > 0, each, b / counts[k])  # noise: nothing gets faster by more samples
-    return Times(b + (count - counts[k]) * each)
+    noise = math.hypot(below, at.bend[0]), math.hypot(above, at.bend[1])
+    return Reach(error, "extrapolated" if beyond else "measured", "", needed, at.times, noise)
 
 
 def variance_law(value: float, spread: float, exact: bool) -> Estimate:

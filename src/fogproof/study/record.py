@@ -126,14 +126,26 @@ def advice(study: Study, measured: Sequence[Measured]) -> str:
     waiting = [
         m for m in measured if m.status == "inconclusive" and m.judged.times_as_many > 1 and m.cell.points == "random"
     ]
-    if not waiting:
-        return ""
-    names = ", ".join(dict.fromkeys(f"{m.cell.scene.name} / {m.cell.name}" for m in waiting))
-    times = math.ceil(max(m.judged.times_as_many for m in waiting))
-    return (
-        f"Not judged unbiased yet, too few samples for so skewed values: {names}. Raise `replicates` to {times * study.replicates}"
-        f" at least, or the last of `samples` to {times * study.samples[-1]}; what is drawn already is kept."
-    )
+    alike = [m for m in waiting if m.record["moments"]["m2"] == 0]
+    skewed = [m for m in waiting if m not in alike]
+    said = []
+    if skewed:
+        times = math.ceil(max(m.judged.times_as_many for m in skewed))
+        said.append(
+            f"Not judged unbiased yet, too few samples for so skewed values: {_names(skewed)}. Raise `replicates` to"
+            f" {times * study.replicates} at least, or the last of `samples` to {times * study.samples[-1]}; what is drawn"
+            " already is kept."
+        )
+    if alike:
+        said.append(
+            f"Not judged unbiased, all realisations are alike and are not the reference: {_names(alike)}. What has `bounds` is"
+            " judged: without them, values too rare to be met may make up the difference."
+        )
+    return " ".join(said)
+
+
+def _names(measured: Sequence[Measured]) -> str:
+    return ", ".join(dict.fromkeys(f"{m.cell.scene.name} / {m.cell.name}" for m in measured))
 
 
 def _scene(number: int, study: Study, measured: Sequence[Measured]) -> dict[str, Any]:

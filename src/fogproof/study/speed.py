@@ -39,7 +39,9 @@ class Times:
 
 def scaled(value: float, below: float, above: float) -> Estimate:
     """Return an estimate whose logarithm reaches so far below and above its value."""
-    return Estimate(value, value * math.exp(-min(below, 700.0)), value * math.exp(above) if above < 700 else math.inf)
+    return Estimate(
+        value, value * math.exp(-below) if below < 700 else 0.0, value * math.exp(above) if above < 700 else math.inf
+    )
 
 
 def _around(logs: np.ndarray) -> Estimate:

@@ -1,0 +1,159 @@
+"""What a study says in words of estimators of known mean, bias and noise: nothing that its numbers do not say."""
+
+import textwrap
+
+import pytest
+from study_fixtures import RAY, toml
+
+from fogproof.errors import FogproofError
+from fogproof.reports import read_record, write_report
+from fogproof.study import read_study, run_study
+
+MINE = """
+    import numpy as np
+
+    class Drawn:
+        sd, bias_of, power = 0.1, 0.0, 0.0
+
+        def __init__(self, scene):
+            self.mean = float(np.exp(-float(scene.built_medium.sigma_t) * float(scene.ray.length)))
+
+        def draw(self, rng, n):
+            return self.mean * (1 + self.bias_of * float(n) ** self.power) + self.sd * rng.normal(size=n)
+
+    class Plain(Drawn):
+        title = "Plain, as it should be"
+
+    class DeclaredAndUnseen(Drawn):
+        title, bias, bias_of = "Hardly biased", "by design", 1e-9
+
+    class Falling(Drawn):
+        title, bias, bias_of, power, sd = "Falling bias", "by design", 1.0, -0.5, 0.01
+
+    class Level(Drawn):
+        title, bias, bias_of, sd = "Level bias", "by design", 0.02, 0.01
+
+    class Rising(Drawn):
+        title, bias, bias_of, power, sd = "Rising bias", "by design", 1e-5, 1.0, 1e-6
+
+    class Growing(Drawn):
+        title = "Growing noise"
+
+        def draw(self, rng, n):
+            return self.mean + 0.001 * n * rng.normal(size=n)
+
+    class Outside(Drawn):
+        title, bounds = "Outside", (0, 0.5)
+
+    class Alike(Drawn):
+        title, bias_of, sd = "Alike and wrong", 0.001, 0.0
+
+    class Exact(Drawn):
+        title, sd = "Alike and right", 0.0
+"""
+NAMES = ("Plain", "DeclaredAndUnseen", "Falling", "Level", "Rising", "Growing", "Outside", "Alike", "Exact")
+
+
+def written(folder, estimators=NAMES, **more):
+    folder.mkdir(exist_ok=True)
+    (folder / "spoken.py").write_text(textwrap.dedent(MINE))
+    scene = {"name": "fog", "quantity": "transmittance", "medium": {"sigma_a": 0.2, "sigma_s": 0.3}, "ray": RAY}
+    table = {
+        "samples": [16, 256, 4096],
+        "replicates": 16,
+        "scenes": [{**scene, "estimators": [f"spoken:{name}" for name in estimators]}],
+        **more,
+    }
+    (folder / "study.toml").write_text(toml(table))
+    return folder / "study.toml"
+
+
+@pytest.fixture(scope="module")
+def told(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("words")
+    record = run_study(read_study(written(folder)), folder / "run")
+    write_report(read_record(folder / "run"), folder / "run", keep=True)
+    return record, (folder / "run" / "index.html").read_text()
+
+
+def entry(told, name):
+    (found,) = (e for e in told[0]["scenes"][0]["estimators"] if e["name"] == f"spoken:{name}")
+    return found
+
+
+def hows(told, name):
+    return [target["how"] for target in entry(told, name)["speed"]["targets"]]
+
+
+def test_what_declares_a_bias_is_never_called_unbiased(told):
+    for name in ("DeclaredAndUnseen", "Falling", "Level", "Rising"):
+        assert entry(told, name)["status"] == "known", name
+    assert told[0]["scenes"][0]["answer"]["best_unbiased"] not in ("spoken:DeclaredAndUnseen", None)
+    assert "extrapolated" not in hows(told, "DeclaredAndUnseen")
+
+
+def test_only_what_stays_is_never_reached(told):
+    assert hows(told, "Level") == ["never", "never", "never"]
+    assert "never" not in hows(told, "Falling")
+    assert hows(told, "Rising")[:2] == ["rises", "rises"]
+    assert "16 are nearer" not in entry(told, "Rising")["speed"]["targets"][0]["why"]  # 256 are near enough as well
+    assert "256 are nearer" in entry(told, "Rising")["speed"]["targets"][0]["why"]
+
+
+def test_noise_that_grows_is_no_law_of_independent_samples(told):
+    assert set(hows(told, "Growing")) <= {"measured", "less-than", "not-reached", "rises"}
+
+
+def test_an_error_that_levels_off_has_no_order(told):
+    assert entry(told, "Level")["order"] is None
+    assert entry(told, "Falling")["order"]["value"] == pytest.approx(0.5, abs=0.2)
+
+
+def test_what_is_rejected_for_something_else_is_not_called_biased(told):
+    record, page = told
+    assert entry(told, "Outside")["status"] == "rejected"
+    assert "“Outside” (bounds)" in record["scenes"][0]["answer"]["text"]
+    assert "1 of 9 estimators is wrong" in page
+    assert "rejected: bounds" in page
+
+
+def test_what_is_alike_and_wrong_is_not_asked_for_more_samples(told):
+    assert "all realisations are alike and are not the reference: fog / spoken:Alike." in told[0]["advice"]
+    assert "Raise" not in told[0]["advice"]
+
+
+def test_names_that_somebody_else_wrote_are_kept_as_they_are(told):
+    assert "“Plain, as it should be”" in told[0]["scenes"][0]["answer"]["text"]
+
+
+def test_no_interval_on_the_page_is_without_sense(told):
+    page = told[1]
+    assert "inf]" not in page
+    assert "e-305" not in page
+    assert "Without any error, and so not drawn: Alike and right." in page
+    assert "estimators are" not in page.split("</h1>")[0]
+
+
+def test_one_count_tells_no_time_of_more_and_draws_no_fall(tmp_path):
+    record = run_study(read_study(written(tmp_path, ("Plain",), samples=[16])), tmp_path / "run")
+    assert [t["how"] for t in record["scenes"][0]["estimators"][0]["speed"]["targets"]] == ["not-reached"] * 3
+    write_report(read_record(tmp_path / "run"), tmp_path / "run", keep=True)
+    page = (tmp_path / "run" / "index.html").read_text()
+    assert "Error against samples" not in page
+    assert "of 1 estimators, both" not in page
+    assert ">: 1 scene" not in page
+
+
+def test_few_realisations_are_no_heavy_tail(tmp_path):
+    record = run_study(read_study(written(tmp_path, ("Plain",), samples=[1], replicates=8)), tmp_path / "run")
+    assert record["scenes"][0]["estimators"][0]["warning"] == ""
+
+
+def test_a_study_that_cannot_run_leaves_nothing_that_the_mended_one_does_not_fit_into(tmp_path):
+    path = written(tmp_path, ("Plain",))
+    text = path.read_text()
+    path.write_text(text.replace("spoken:Plain", "regular"))
+    with pytest.raises(FogproofError, match="VoxelGrid"):
+        run_study(read_study(path), tmp_path / "run")
+    path.write_text(text)
+    run_study(read_study(path), tmp_path / "run")
