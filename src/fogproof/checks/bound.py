@@ -101,33 +101,35 @@ def check_bound(
             slack = noise
             best, value, place, used, independent = searched(1 + slack)
     over = not best <= 1 + slack
-    at = shorten(place)
-    outcome: Outcome = "rejected" if over else "not rejected"
-    size = f"is {best:.9g} times its bound" if best > 1 + _NEAR else f"is above its bound, by {best - 1:.2g} of that,"
-    if not np.isfinite(value):
-        size = "is no number that a bound could hold,"
-    above = f"f = {value:.9g} {size} at {at}" if over else f"f <= bound at {used} points"
-    part = "part of the domain where f exceeds its bound"
-    resolution = None if over else Resolution(part, -math.expm1(math.log(MISS) / independent), MISS)
-    cause = "wrong bound" if over else ""
-    findings = [
-        Finding("above everywhere", outcome, above, effect=best - 1, resolution=resolution, cause=cause),
-    ]
+    findings = _found(best, value, shorten(place), used, independent, over)
     if not over:
-        near = best >= attained or highest == 0  # where both are zero, the bound is as tight as can be
-        message = (
-            f"f reaches {best:.4g} of its bound, at {at}" if highest else f"f and its bound are 0 at {used} points"
-        )
-        message += (
-            ""
-            if near
-            else f", less than {attained:g}: the bound is loose, or a peak was missed: more evaluations would tell"
-        )
-        findings.append(Finding("attained somewhere", "not rejected" if near else "inconclusive", message, effect=best))
+        findings.append(_attained(best, shorten(place), used, highest, attained))
     name = getattr(f, "__qualname__", type(f).__name__)
     reproduce = f"check_bound({name}, ..., evaluations={evaluations}, seed={seed})"
     seconds = time.perf_counter() - started
     return Verdict(tuple(findings), 0.0, used, seed, seconds, {}, likely_cause(findings), reproduce)
+
+
+def _found(best: float, value: float, at: str, used: int, independent: int, over: bool) -> list[Finding]:
+    """Return what was found of the largest quotient, `best`, where f has `value`."""
+    size = f"is {best:.9g} times its bound" if best > 1 + _NEAR else f"is above its bound, by {best - 1:.2g} of that,"
+    if not np.isfinite(value):
+        size = "is no number that a bound could hold,"
+    message = f"f = {value:.9g} {size} at {at}" if over else f"f <= bound at {used} points"
+    part = "part of the domain where f exceeds its bound"
+    resolution = None if over else Resolution(part, -math.expm1(math.log(MISS) / independent), MISS)
+    outcome: Outcome = "rejected" if over else "not rejected"
+    cause = "wrong bound" if over else ""
+    return [Finding("above everywhere", outcome, message, effect=best - 1, resolution=resolution, cause=cause)]
+
+
+def _attained(best: float, at: str, used: int, highest: float, attained: float) -> Finding:
+    """Return whether a bound that is nowhere larger than `highest` is reached as nearly as asked for."""
+    near = best >= attained or highest == 0  # where both are zero, the bound is as tight as can be
+    message = f"f reaches {best:.4g} of its bound, at {at}" if highest else f"f and its bound are 0 at {used} points"
+    if not near:
+        message += f", less than {attained:g}: the bound is loose, or a peak was missed: more evaluations would tell"
+    return Finding("attained somewhere", "not rejected" if near else "inconclusive", message, effect=best)
 
 
 def _search(
