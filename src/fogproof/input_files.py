@@ -65,13 +65,16 @@ def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def read_text(path: str | Path, what: str) -> str:
-    """Return the UTF-8 text of a regular file of no more than `TEXT` bytes, or raise an `InvalidInputError` that names it."""
+    """Return the UTF-8 text of a regular file of no more than `TEXT` bytes, or raise an `InvalidInputError` that names it.
+
+    The mark that some editors begin UTF-8 with is no part of it.
+    """
     with open_regular(path, what) as file:
         if size_of(file) > TEXT:
             size = f"it has {size_of(file)} bytes, more than {TEXT}"
             raise InvalidInputError(f"cannot read {what} {path}: {size}", str(path))
         try:
-            return file.read(TEXT).decode("utf-8").replace("\r\n", "\n")
+            return file.read(TEXT).decode("utf-8-sig").replace("\r\n", "\n")
         except OSError as error:
             raise InvalidInputError(f"cannot read {what} {path}: {error.strerror or error}", str(path)) from None
         except UnicodeDecodeError:

@@ -47,9 +47,12 @@ def _table(path: Path) -> dict[str, Any]:
             raise InvalidInputError(f"{path}: must be a table of keys, got {shorten(table)}", str(path))
         return table
     try:
-        return tomllib.loads(text)
+        table = tomllib.loads(text)
     except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise InvalidInputError(f"{path} is not valid TOML: {error}", str(path)) from None
+    if isinstance(table.get("scenes"), list):
+        raise InvalidInputError(f"{path} is a study, not a scene: `fogproof study {path} -o DIR` runs it", "scenes")
+    return table
 
 
 def read_fields(types: dict[str, Any], data: Any, origin: str) -> dict[str, Any]:
@@ -67,7 +70,7 @@ def read_fields(types: dict[str, Any], data: Any, origin: str) -> dict[str, Any]
         with np.errstate(all="ignore"):  # a length that overflows is judged as the infinity that it is
             model = input_model(types).model_validate_json(json.dumps(_with_infinities(data)))
     except pydantic.ValidationError as error:
-        raise _complaint(error, data, origin) from None
+        raise _complaint(error, data, origin, tuple(types)) from None
     return {name: getattr(model, name) for name in types}
 
 
@@ -95,26 +98,59 @@ def _with_infinities(value: Any) -> Any:
     return {"inf": math.inf, "-inf": -math.inf}.get(value, value) if isinstance(value, str) else value
 
 
-def _complaint(error: Any, data: Any, origin: str) -> InvalidInputError | InvalidValueError:
-    """Turn pydantic's report into one sentence; the first fault is told, the others are counted."""
+_REASONS = {
+    "extra_forbidden": "is not a known key",
+    "unexpected_keyword_argument": "is not a known key",
+    "missing": "is missing",
+    "missing_argument": "is missing",
+    "union_tag_not_found": "needs a key 'kind'",
+}
+_RULES = {
+    "tuple_type": "must be a list",
+    "list_type": "must be a list",
+    "int_type": "must be a whole number",
+    "float_type": "must be a number",
+    "string_type": "must be a text",
+    "bool_type": "must be true or false",
+}
+_TOLD = 3
+"""Faults that one sentence tells of; the others are counted."""
+
+
+def _complaint(error: Any, data: Any, origin: str, known: tuple[str, ...]) -> InvalidInputError | InvalidValueError:
+    """Turn pydantic's report into one sentence: the first fault, and the next few where keys are missing or too many.
+
+    known  the keys of the outermost table
+    """
     faults = {_place(fault, data): fault for fault in reversed(error.errors())}
-    place, fault = list(faults.items())[-1]
-    more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
+    (place, fault), *others = reversed(faults.items())
     cause = fault.get("ctx", {}).get("error")
     if isinstance(cause, InvalidValueError):
         return cause.inside(place, origin)
-    reasons = {
-        "extra_forbidden": "is not a known key",
-        "unexpected_keyword_argument": "is not a known key",
-        "missing": "is missing",
-        "missing_argument": "is missing",
-        "union_tag_not_found": "needs a key 'kind'",
-    }
+    missing = [other for other, each in faults.items() if each["type"] in ("missing", "missing_argument")]
+    told = [f"{place} {_reason(place, fault, known, missing)}"]
+    told += [f"{other} {_reason(other, each, known, missing)}" for other, each in others if each["type"] in _REASONS]
+    left = len(faults) - min(len(told), _TOLD)
+    more = f" (and {left} more)" if left else ""
+    return InvalidInputError(f"{origin}: {', '.join(told[:_TOLD])}{more}", place)
+
+
+def _reason(place: str, fault: Any, known: tuple[str, ...], missing: list[str]) -> str:
+    """Return what is wrong with the key at a place; of one that is not known, what it may have been meant for."""
+    import difflib
+
     if fault["type"] == "union_tag_invalid":
-        reason = f"has kind {shorten(fault['ctx']['tag'])}; known are {fault['ctx']['expected_tags']}"
-    else:
-        reason = reasons.get(fault["type"], f"{_lower(fault['msg'])}, got {shorten(fault['input'])}")
-    return InvalidInputError(f"{origin}: {place} {reason}{more}", place)
+        return f"has kind {shorten(fault['ctx']['tag'])}; known are {fault['ctx']['expected_tags']}"
+    reason = _REASONS.get(fault["type"])
+    if reason is None:
+        rule = _RULES.get(fault["type"], _lower(fault["msg"]).replace("input should be", "must be", 1))
+        return f"{rule}, got {shorten(fault['input'])}"
+    if "not a known key" in reason:
+        table, _, key = place.rpartition(".")
+        beside = [other.rpartition(".")[2] for other in missing if other.rpartition(".")[0] == table]
+        near = difflib.get_close_matches(key, beside or (() if table else known), 1)
+        return f"{reason}: did you mean {near[0]}?" if near else reason
+    return reason
 
 
 def _place(fault: Any, data: Any) -> str:
