@@ -38,10 +38,10 @@ class InvalidValueError(FogproofError, ValueError):
         super().__init__(f"{argument} {rule}, got {shorten(got)}" + (f"; {fix}" if fix else ""), argument)
 
     def inside(self, place: str, origin: str) -> InvalidValueError:
-        """Return the same complaint about an argument that stands at `place` of the file or request `origin`."""
+        """Return the same complaint about an argument at `place` of the file or request `origin`; the argument "" is the place."""
         moved = InvalidValueError(self.argument, self.rule, self.got, self.fix)
-        fix = f"; {self.fix}" if self.fix else ""
-        moved.args = (f"{origin}: {self.argument} {self.rule}, got {shorten(self.got)} in {place}{fix}",)
+        fix, where = f"; {self.fix}" if self.fix else "", f" in {place}" if self.argument else ""
+        moved.args = (f"{origin}: {self.argument or place} {self.rule}, got {shorten(self.got)}{where}{fix}",)
         moved.path = place if place.endswith(self.argument) else f"{place}.{self.argument}"
         return moved
 

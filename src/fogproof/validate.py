@@ -18,6 +18,7 @@ LONGEST = 1e6
 
 def as_float_array(name: str, value: Any) -> np.ndarray:
     """Return `value` as a new float64 array without negative zeros, or say what cannot be read as numbers."""
+    array = np.empty(0)
     try:
         array = np.asarray(value)
         if array.dtype.kind == "O" and all(_is_number(one) for one in array.flat):  # fractions, decimals, mpmath's
@@ -26,7 +27,7 @@ def as_float_array(name: str, value: Any) -> np.ndarray:
             raise TypeError(array.dtype)
         return np.asarray(array.astype(np.float64) + 0.0)  # -0.0 + 0.0 = 0.0: its sign must not choose a branch
     except (TypeError, ValueError, OverflowError):
-        fix = "give real and imaginary parts as two channels" if np.iscomplexobj(value) else ""
+        fix = "give real and imaginary parts as two channels" if np.iscomplexobj(array) else ""
         raise InvalidValueError(name, "must be a number or an array of numbers", value, fix) from None
 
 

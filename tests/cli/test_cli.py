@@ -129,7 +129,7 @@ BAD_REQUESTS = [
     ({"ray": {**REQUEST["ray"], "length": -1}}, "length must be >= 0", "ray.length"),
     ({"ray": {**REQUEST["ray"], "direction": [0, 0, 3]}}, "direction must have unit length", "ray.direction"),
     ({"luck": 1}, "luck is not a known key", "luck"),
-    ({"quantity": "phase_pdf"}, "phase is missing, mu is missing, medium is not a known key (and 1 more)", "phase"),
+    ({"quantity": "phase_pdf"}, "medium is not a known key, and phase, mu are missing (and 1 more)", "medium"),
 ]
 
 

@@ -13,6 +13,7 @@ import pytest
 from fogproof import HenyeyGreenstein, analytic
 from fogproof.oracle import PROTOCOL, answer_text, schema
 from fogproof.oracle.answers import to_json
+from fogproof.oracle.limits import Limits
 from fogproof.quantities import quantities
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -191,3 +192,23 @@ def test_a_proven_enclosure_lies_within_the_ordinary_answer(request_):
 
 def test_what_has_no_proof_says_so():
     assert answer_text(json.dumps(PHASE), True)["error"]["code"] == "unsupported"
+
+
+@pytest.mark.parametrize(
+    ("mu", "words"),
+    [
+        ([[1, 2], [3]], "mu must be a number or an array of numbers, got"),
+        ("0.5", "mu must be a number or an array of numbers, got '0.5'"),
+        (json.loads("[" * 17 + "1" + "]" * 17), "mu must have at most 16 axes, got 17"),
+    ],
+)
+def test_what_is_wrong_with_an_array_is_said_of_its_argument(mu, words):
+    request = {"quantity": "phase_pdf", "phase": {"kind": "rayleigh"}, "mu": mu}
+    error = answer_text(json.dumps(request))["error"]
+    assert words in error["message"]
+    assert error["path"] == "mu"
+
+
+def test_an_alarm_that_rings_at_once_is_a_timeout():
+    answer = answer_text(json.dumps({"quantity": "phase_pdf", "phase": HG, "mu": 0}), limits=Limits(seconds=1e-6))
+    assert answer["error"]["code"] == "timeout"

@@ -49,7 +49,17 @@ def test_json_is_alone_on_stdout(tmp_path):
         ("reference = 0.5\ndomain = 'sphere'", "reference is for estimators"),
         ("domain = 'sphre'", "'sphre'; known are sphere"),
         ("domain = { kind = 'interval', a = 1, b = 0 }", "must be greater than a"),
-        ("domain = { kind = 'interval', low = 1 }", "domain interval got an unexpected keyword argument 'low'"),
+        (
+            "domain = { kind = 'interval', low = 1 }",
+            "low is not a known key; a is missing; b is missing; its keys are kind, a, b",
+        ),
+        ("domain = { kind = 'discrete' }", "domain discrete: n is missing; its keys are kind, n"),
+        ("domain = { kind = 'sphere', radius = 1 }", "radius is not a known key; it has no key but kind"),
+        ("domain = { kind = 'product' }", "parts is missing; its keys are kind, parts"),
+        ("domain = 'line'\ndimensons = 1", "did you mean dimensions?"),
+        ("phase = { kind = 'rayleigh', g = 0 }", "phase.g is not a known key"),
+        ("medium = { sigmaa = 1, sigma_s = 0 }", "medium.sigmaa is not a known key, and medium.sigma_a is missing"),
+        ("scene = 'absent.toml'", "cannot read the scene file"),
         ("domain = 'line'\ndimension = 1", "dimension is not a known key"),
         ("domain = 'line'\ndimensions = 0", "dimensions must be >= 1"),
         ("reference = '$g'", "$g is no parameter"),
@@ -81,3 +91,23 @@ def test_what_cannot_be_started_is_bad_input(tmp_path, capfd):
             main(["check", "--spec", str(tmp_path / "spec.toml"), "--exec", wrong])
         assert end.value.code == 2
         assert said in capfd.readouterr().err
+
+
+def test_a_spec_of_an_editor_that_marks_its_utf8(tmp_path):
+    assert run(tmp_path, "\ufeffreference = 0\nvariance = 0", "--samples", "2000").return_value == 0
+
+
+def test_a_scene_may_stand_in_a_file_of_its_own(tmp_path):
+    scene = 'scattering = "none"\nbackground = 1.0\n[medium]\nsigma_a = 0.0\nsigma_s = 0.0\n[ray]\n'
+    (tmp_path / "scene.toml").write_text(f"{scene}origin = [0, 0, 0]\ndirection = [0, 0, 1]\nlength = 1.0\n")
+    result = run(tmp_path, "scene = 'scene.toml'\nbounds = [0, 1]", "--samples", "2000")
+    assert "the reference is 1" in result.output, result.output
+
+
+def test_a_file_has_no_family(tmp_path):
+    (tmp_path / "spec.toml").write_text("reference = 0\ncolumns = ['value']\nfamily = { g = [0, 1] }")
+    (tmp_path / "x.csv").write_text("0\n" * 500)
+    result = CliRunner().invoke(
+        command, [str(tmp_path / "x.csv"), "--spec", str(tmp_path / "spec.toml")], standalone_mode=False
+    )
+    assert "samples of one member" in str(result.exception or result.output)

@@ -69,8 +69,9 @@ def _check(member: Any, samples: int, alpha: float, seed: int, options: Mapping[
 
 def _failed(error: FogproofError, alpha: float, samples: int, seed: int) -> Verdict:
     """A member that raises or breaks its contract is wrong at this parameter."""
-    finding = Finding("contract", "rejected", f"{type(error).__name__}: {error}", alpha=0.0)
-    return Verdict((finding,), alpha, samples, seed, cause="contract")
+    cause = getattr(error, "cause", "contract")
+    finding = Finding("contract", "rejected", str(error), alpha=0.0, cause=cause)
+    return Verdict((finding,), alpha, samples, seed, cause=cause)
 
 
 def doubt_of(verdict: Verdict) -> float:

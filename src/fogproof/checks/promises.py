@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from fogproof.checks.digits import digits_of, rounded
 from fogproof.checks.subject import Subject, call, in_domain, named, nudged, rounding_spread
 from fogproof.checks.verdict import Finding
 from fogproof.contracts import Draw
@@ -29,7 +30,14 @@ _CAUSES = {
 
 
 _POLE = ": take the distance from it for the coordinate, where numbers are finer, and what is there is judged too"
-_TELLING = {" times pdf)": "wrong measure", "pdf is nan at": "not a number", "pdf is -": "negative pdf"}
+_TELLING = {
+    "%.17g": "coarse numbers",
+    "all are of single precision": "coarse numbers",
+    "all are of half precision": "coarse numbers",
+    " times pdf)": "wrong measure",
+    "pdf is nan at": "not a number",
+    "pdf is -": "negative pdf",
+}
 """Words of an example that say more than the name of the promise."""
 
 _USUAL = 4.0  # times the median: noise has tails
@@ -82,7 +90,8 @@ class Watch:
         """Check one batch; return (n,) which samples are good points of the continuous part, and (good,) the pdf there."""
         subject, x = self.subject, draw.x
         within = inside(subject, draw)
-        self._note("domain", ~within, lambda i: f"x = {shorten(x[i])} is not a point of {subject.domain}", len(x))
+        few = _few_digits(subject, x[~within])
+        self._note("domain", ~within, lambda i: f"x = {shorten(x[i])} is not a point of {subject.domain}{few}", len(x))
         good = within
         if subject.atoms:
             good = good & ~at_any_atom(subject, x)
@@ -138,11 +147,12 @@ class Watch:
         if differ.any():
             slack = rounding_spread(subject.density, x[at[differ]], subject.roundoff)
             differ[differ] = ~(np.abs(got[differ] - p[differ]) <= _with_usual_noise(slack, p[differ]))
+        few = rounded(subject.density, x[at[differ]], got[differ], p[differ], x) if differ.any() else ""
         self._note(
             "returned pdf",
             differ,
             lambda i: (
-                f"sample returned {got[i]:.9g}, pdf(x) is {p[i]:.9g} at x = {shorten(x[at[i]])}{_ratio(got[i], p[i])}"
+                f"sample returned {got[i]:.9g}, pdf(x) is {p[i]:.9g} at x = {shorten(x[at[i]])}{_ratio(got[i], p[i])}{few}"
             ),
             len(at),
         )
@@ -217,6 +227,15 @@ class Watch:
             else:
                 found.append(Finding(name, "not rejected", f"kept by all {n} samples"))
         return found
+
+
+def _few_digits(subject: Subject, x: np.ndarray) -> str:
+    """Return in words that points lie outside of the domain only because few digits of them are printed; "" if not so."""
+    digits = digits_of(x) if x.ndim > 1 and len(x) else None
+    if digits is None:
+        return ""
+    slack = 4 * (digits.relative + digits.absolute)
+    return f"; {digits.words}" if bool(np.all(subject.domain.contains(x, slack))) else ""
 
 
 def _with_usual_noise(slack: np.ndarray, value: np.ndarray) -> np.ndarray:

@@ -13,6 +13,7 @@ from fogproof.domains import Domain
 from fogproof.errors import FogproofError, SubjectError, shorten
 
 Precision = Literal["float64", "float32"]
+_COARSE = ("float32", "float16", "bfloat16")
 UNIT_ROUNDOFF: dict[Precision, float] = {"float64": 2.0**-53, "float32": 2.0**-24}
 
 
@@ -98,7 +99,10 @@ def call(what: str, function: Callable[..., Any], *arguments: Any) -> Any:
 
 def numbers(what: str, value: Any, shape: tuple[int, ...]) -> np.ndarray:
     """Return `value` as a float64 array of the shape promised, or say what came instead and how to mend it."""
-    array = _array(what, value)
+    return _numbers(what, _array(what, value), value, shape)
+
+
+def _numbers(what: str, array: np.ndarray, value: Any, shape: tuple[int, ...]) -> np.ndarray:
     if array.dtype.kind not in "iufb":
         raise SubjectError(f"{what} must return numbers, got dtype {array.dtype}: {shorten(value)}", what)
     if array.shape != shape:
@@ -135,7 +139,10 @@ def _reshaping(got: tuple[int, ...], wanted: tuple[int, ...]) -> str:
 
 
 def as_draw(result: Any, n: int, domain: Domain, precision: Precision = "float64") -> Draw:
-    """Return what a sampler returned as a `Draw` of n points; every array has the shape its contract promises."""
+    """Return what a sampler returned as a `Draw` of n points; every array has the shape its contract promises.
+
+    They are copies: a sampler may fill one buffer anew in every call.
+    """
     if isinstance(result, (tuple, list)) and not isinstance(result, Draw) and len(result) and len(result) != n:
         if all(getattr(part, "shape", None) == (n,) for part in result) and domain.shape == (len(result),):
             raise SubjectError("sample returned one array a coordinate; join them: np.stack(parts, axis=-1)", "sample")
@@ -143,18 +150,31 @@ def as_draw(result: Any, n: int, domain: Domain, precision: Precision = "float64
             given = f"sample returned a {type(result).__name__} of {len(result)}"
             raise SubjectError(f"{given}; name its parts: fogproof.Draw(x, pdf=..., weight=...)", "sample")
     draw = result if isinstance(result, Draw) else Draw(result)
-    x = numbers("sample: x", draw.x, (n, *domain.shape))
-    kind = getattr(draw.x, "dtype", None)
-    if precision == "float64" and str(kind).rpartition(".")[2] in ("float32", "float16", "bfloat16"):
+    own = _array("sample: x", draw.x)
+    x = _numbers("sample: x", own, draw.x, (n, *domain.shape))
+    kind = getattr(draw.x, "dtype", own.dtype)  # PyTorch's bfloat16 arrives as another type
+    kind = own.dtype if own.dtype.name in _COARSE else kind
+    if precision == "float64" and str(kind).rpartition(".")[2] in _COARSE:
         fix = 'say precision="float32", or compute in double precision'
         raise SubjectError(f"sample: x is {kind} where double precision is claimed; {fix}", "sample")
     pdf = None if draw.pdf is None else numbers("sample: pdf", draw.pdf, (n,))
     event = None if draw.event is None else numbers("sample: event", draw.event, (n,))
-    valid = None if draw.valid is None else numbers("sample: valid", draw.valid, (n,)).astype(bool)
+    valid = None if draw.valid is None else flags("sample: valid", draw.valid, n)
     weight = None if draw.weight is None else _array("sample: weight", draw.weight)
     if weight is not None and (weight.ndim not in (1, 2) or len(weight) != n or weight.dtype.kind not in "iufb"):
         raise SubjectError(f"sample: weight must have shape ({n},) or ({n}, channels), got {weight.shape}", "weight")
-    return Draw(x, pdf, None if weight is None else weight.astype(np.float64, copy=False), event, valid)
+    weight = None if weight is None else weight.astype(np.float64, copy=False)
+    pdf, weight, event = (None if part is None else part.copy() for part in (pdf, weight, event))
+    return Draw(x.copy(), pdf, weight, event, valid)
+
+
+def flags(what: str, value: Any, n: int) -> np.ndarray:
+    """Return n marks, each 0 or 1, as truth values."""
+    found = numbers(what, value, (n,))
+    odd = (found != 0) & (found != 1)
+    if odd.any():
+        raise SubjectError(f"{what} must be 0 or 1, got {found[odd][0]:g}: a share of a sample is a weight", what)
+    return found.astype(bool)
 
 
 def in_domain(domain: Domain, x: np.ndarray, roundoff: float) -> np.ndarray:

@@ -106,8 +106,8 @@ def within(seconds: float) -> Iterator[None]:
         raise _Alarm
 
     before = signal.signal(signal.SIGALRM, ring)
-    signal.setitimer(signal.ITIMER_REAL, seconds)
     try:
+        signal.setitimer(signal.ITIMER_REAL, seconds)  # it may ring at once
         yield
     except _Alarm:
         raise TimeLimitError(f"no answer within {seconds:g} s; ask for less, or allow more time") from None

@@ -6,6 +6,8 @@ from typing import Literal
 
 import numpy as np
 
+from fogproof.pipe.number_lines import habit, numbers_of
+
 Type = Literal["float64", "float32", "text"]
 DTYPES: dict[str, str] = {"float64": "<f8", "float32": "<f4"}
 
@@ -29,14 +31,12 @@ def from_lines(lines: list[bytes], columns: int) -> np.ndarray:
     """Return lines of text as rows (n, columns), or raise `ValueError` with the place and what stands there."""
     rows = np.empty((len(lines), columns))
     for place, line in enumerate(lines):
-        cells = line.split(b",")
         try:
-            if len(cells) != columns:
-                raise ValueError
-            rows[place] = [float(cell) for cell in cells]
+            rows[place] = numbers_of(line.split(b","), columns)
         except ValueError:
             shown = line[:80].decode("utf-8", "replace")
-            raise ValueError(f"row {place + 1} is {shown!r}, not {columns} numbers between commas") from None
+            due = f"{columns} numbers between commas" if columns > 1 else "a number"
+            raise ValueError(f"row {place + 1} is {shown!r}, not {due}{habit(line, columns)}") from None
     return rows
 
 

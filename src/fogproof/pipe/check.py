@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from fogproof.checks import Finding, Verdict, check_estimator, check_family, check_sampler, fresh_seed
+from fogproof.checks.digits import digits_of
 from fogproof.checks.subject import Precision, Subject
 from fogproof.errors import InvalidInputError, NotInstalledError, SubjectError
 from fogproof.pipe.estimator import PipeEstimator, draws_of
@@ -23,6 +24,7 @@ from fogproof.pipe.program import Program
 from fogproof.pipe.ratios import check_ratios
 from fogproof.pipe.recorded import Recorded, check_recorded
 from fogproof.pipe.sampler import PipeSampler, draw_of, misread
+from fogproof.pipe.seeds import function_of_its_seed
 from fogproof.pipe.spec import Spec, read_table, spec_of
 from fogproof.pipe.truth import KnownLaw, expectation_of, truth_of
 
@@ -72,19 +74,35 @@ def check_program(
         with program:
             judge = partial(_family, table=table, origin=origin) if base.family else _single
             verdict = judge(program, base, settings)
+            seeded = function_of_its_seed(program, base)
+        if seeded is not None:
+            cause = verdict.cause or seeded.cause
+            verdict = replace(verdict, findings=(*verdict.findings, seeded), cause=cause)
     except SubjectError as error:
         verdict = failed(error, settings)
     words = command if isinstance(command, str) else shlex.join(command)
     verdict = replace(verdict, reproduce=_command(["--exec", words], origin, settings, verdict.seed))
     notes = tuple(dict.fromkeys(program.notes)) if program else ()
-    return Checked(verdict, notes, program.said if program else "")
+    shown = program.shown if program else None
+    return Checked(verdict, notes + _digits(verdict, shown), program.said if program else "")
+
+
+def _digits(verdict: Verdict, numbers: np.ndarray | None) -> tuple[str, ...]:
+    """Return a note on how few digits numbers have, where that is what is wrong."""
+    found = digits_of(numbers) if verdict.cause == "coarse numbers" and numbers is not None else None
+    return (f"of its numbers, {found.words}",) if found else ()
 
 
 def check_file(path: str | Path, spec: str | Path | Mapping[str, Any], settings: Settings | None = None) -> Checked:
     """Judge the samples or realisations in a file."""
     settings = settings or Settings()
     table, origin = (spec, "spec") if isinstance(spec, Mapping) else (read_table(spec), str(spec))
-    outcome = _of_file(Path(path), spec_of(table, origin), settings)
+    base = spec_of(table, origin)
+    if base.family:
+        raise InvalidInputError(
+            f"{origin}: a file holds samples of one member; leave family out, give parameters", "family"
+        )
+    outcome = _of_file(Path(path), base, settings)
     reproduce = _command([str(path)], origin, settings, outcome.verdict.seed)
     return replace(outcome, verdict=replace(outcome.verdict, reproduce=reproduce))
 
@@ -115,7 +133,7 @@ def _of_file(path: Path, base: Spec, settings: Settings) -> Checked:
     subject = _subject(base, truth, recorded.sample, partial(_value, truth), precision, recorded.pilot)
     most = min(settings.samples or base.samples or recorded.tested, truth.most or recorded.tested)
     verdict = check_recorded(recorded, subject, most, settings.resolution, settings.alpha, settings.seed)
-    return Checked(verdict, truth.notes)
+    return Checked(verdict, truth.notes + _digits(verdict, draw.x))
 
 
 def _command(what: Sequence[str], spec: str, settings: Settings, seed: int) -> str:

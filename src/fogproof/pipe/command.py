@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shlex
 from collections.abc import Sequence
 
@@ -22,5 +23,6 @@ def words_of(command: str | Sequence[str]) -> list[str]:
 def cannot_start(name: str, error: OSError | ValueError) -> InvalidInputError:
     """Return what to say of a command that does not start."""
     reason = getattr(error, "strerror", None) or str(error)
-    shell = "" if "/" in name else f"; no shell reads the command, and a program in this folder is ./{name}"
+    folder = "" if "/" in name else f", and a program in this folder is ./{name}"
+    shell = f"; no shell reads the command{folder}" if not os.path.isabs(name) else ""
     return InvalidInputError(f"cannot start {name!r}: {reason}{shell}", "--exec")

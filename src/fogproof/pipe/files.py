@@ -11,6 +11,7 @@ from numpy.lib import format as npy
 from fogproof.errors import InvalidInputError, UnsupportedError, shorten
 from fogproof.input_files import open_regular, size_of
 from fogproof.pipe.blocks import DTYPES
+from fogproof.pipe.number_lines import habit, numbers_of
 
 _MOST = 2**30  # bytes that are read
 _LONGEST_HEADER = 10_000  # of a .npy file
@@ -29,7 +30,7 @@ def read_rows(path: Path, columns: int, kind: Literal["float64", "float32"]) -> 
     if suffix == ".bin":
         rows = _bare(path, columns, kind)
     elif suffix == ".npy":
-        rows = _npy(path)
+        rows, names = _npy(path)
     elif suffix in (".csv", ".txt"):
         rows, names = _csv(path)
     else:
@@ -42,7 +43,7 @@ def read_rows(path: Path, columns: int, kind: Literal["float64", "float32"]) -> 
     return rows, names
 
 
-def _npy(path: Path) -> np.ndarray:
+def _npy(path: Path) -> tuple[np.ndarray, tuple[str, ...]]:
     with open_regular(path, "the samples") as file:
         _require_size(file, path)
         try:
@@ -55,9 +56,13 @@ def _npy(path: Path) -> np.ndarray:
         except Exception as error:  # NumPy evaluates the header as a Python literal: anything may come of it
             said = str(error).partition("\n")[0][:80] or "its header is broken"
             raise InvalidInputError(f"{path} is no .npy array: {said}", str(path)) from None
-    if array.dtype.kind not in "iuf" or array.dtype.itemsize > 8:
+    names: tuple[str, ...] = ()
+    if array.dtype.names and all(array.dtype[name].kind in "iuf" for name in array.dtype.names) and array.ndim == 1:
+        names = tuple(_name(name.encode(), path) for name in array.dtype.names)
+        array = np.stack([array[name] for name in array.dtype.names], axis=-1)
+    if array.dtype.kind not in "iuf":
         raise InvalidInputError(f"{path} must hold numbers, got dtype {shorten(str(array.dtype))}", str(path))
-    return array if array.dtype == np.float32 else array.astype(np.float64)
+    return array if array.dtype == np.float32 else array.astype(np.float64), names
 
 
 def _bare(path: Path, columns: int, kind: Literal["float64", "float32"]) -> np.ndarray:
@@ -76,43 +81,54 @@ def _csv(path: Path) -> tuple[np.ndarray, tuple[str, ...]]:
     with open_regular(path, "the samples") as file:
         _require_size(file, path)
         text = file.read().removeprefix(b"\xef\xbb\xbf")
-    lines = [line for line in text.replace(b"\r", b"").split(b"\n") if line.strip() and not line.startswith(b"#")]
+    if text[:2] in (b"\xff\xfe", b"\xfe\xff") or b"\0" in text[:64]:
+        raise InvalidInputError(f"{path} is not UTF-8 text; save it as UTF-8", str(path))
+    every = [line for line in text.replace(b"\r\n", b"\n").replace(b"\r", b"\n").split(b"\n") if line.strip()]
+    lines = [line for line in every if not line.startswith(b"#")]
     if not lines:
         raise InvalidInputError(f"{path} holds no rows", str(path))
-    separator = b"," if b"," in lines[0] else b";" if b";" in lines[0] else b"\t" if b"\t" in lines[0] else None
-    first = lines[0].split(separator)
-    names = () if _number(first[0]) else tuple(_name(cell, path) for cell in first)
-    body = lines[1:] if names else lines
+    separator = b";" if b";" in lines[0] else next((mark for mark in (b",", b"\t") if mark in lines[0]), None)
+    first = _cells(lines[0], separator)
+    if any(byte in b"0123456789" for byte in first[0].lstrip()[:2]) or first[0].strip().lower() in (b"inf", b"nan"):
+        body, names = lines, _remarked(every[0], separator, len(first))
+    else:
+        body, names = lines[1:], tuple(_name(cell, path) for cell in first)
     rows = np.empty((len(body), len(first)))
     for place, line in enumerate(body):
-        cells = line.split(separator)
         try:
-            if len(cells) != len(first):
-                raise ValueError
-            rows[place] = [float(cell) for cell in cells]
+            rows[place] = numbers_of(_cells(line, separator), len(first))
         except ValueError:
-            shown = line[:60].decode("utf-8", "replace")
-            where = f"row {place + 1} is {shown!r}"
-            raise InvalidInputError(f"{path}: {where}, not {len(first)} numbers", str(path)) from None
+            shown = f"row {place + 1} is {line[:60].decode('utf-8', 'replace')!r}"
+            rule = f"not {len(first)} numbers{habit(line, len(first), separator)}"
+            raise InvalidInputError(f"{path}: {shown}, {rule}", str(path)) from None
     return rows, names
 
 
-def _number(cell: bytes) -> bool:
-    try:
-        float(cell)
-    except ValueError:
-        return False
-    return True
+def _cells(line: bytes, separator: bytes | None) -> list[bytes]:
+    """Return the cells of a line, each without the quotes that some programs put around all of them."""
+    cells = line.split(separator)
+    return [cell.strip().strip(b'"') for cell in cells] if b'"' in line else cells
+
+
+def _remarked(line: bytes, separator: bytes | None, count: int) -> tuple[str, ...]:
+    """Return the names of columns in a remark before the numbers, where NumPy's `savetxt` writes them; () if it has none."""
+    words = [_bare_name(cell) for cell in line.lstrip(b"# ").split(separator)] if line.startswith(b"#") else []
+    return tuple(words) if len(words) == count and set(words) <= set(_KNOWN) else ()
 
 
 def _name(cell: bytes, path: Path) -> str:
     """Return the column's name: x1, y or "pdf [1/sr]" are read for what they are."""
-    word = cell.decode("utf-8", "replace").strip().strip('"').lower().partition(" ")[0].partition("[")[0]
-    bare = word.rstrip("0123456789_")
-    name = _NAMES.get(bare, bare)
+    name = _bare_name(cell)
     if name not in _KNOWN:
+        word = cell.decode("utf-8", "replace").strip()
         raise InvalidInputError(f"{path} has a column {shorten(word, 40)}; known are {', '.join(_KNOWN)}", str(path))
     return name
+
+
+def _bare_name(cell: bytes) -> str:
+    word = cell.decode("utf-8", "replace").strip().strip('"').lower().partition(" ")[0].partition("[")[0]
+    bare = word.rstrip("0123456789_")
+    return _NAMES.get(bare, bare)
 
 
 def _require_size(file: object, path: Path) -> int:

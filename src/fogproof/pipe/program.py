@@ -18,12 +18,15 @@ class Program:
 
     command   the command line, as a text that is split like a shell's, or as words; no shell is started
     timeouts  how long it may take
+
+    `notes` and `said` (to stderr) tell afterwards what it did besides; `shown` are points of its first large answer.
     """
 
     def __init__(self, command: str | Sequence[str], timeouts: Timeouts | None = None) -> None:
         self._command, self._timeouts = command, timeouts or Timeouts()
         self._process: Process | None = None
         self.notes: list[str] = []
+        self.shown: np.ndarray | None = None
         self.said = ""
         self.greeting = self._start()
 
@@ -76,7 +79,7 @@ class Program:
             raise BrokenLineError(f"wrote more than it was asked for: {_shown(extra)}{wide}")
         process.send(request_line(request, n, rows.shape[1], seed, parameters))
         process.send(encoded(rows, kind))
-        require_answer(process.line(seconds, f'the answer to "{request}" of {n} rows'), n)
+        require_answer(process.line(seconds, f'the answer to "{request}" of {n} rows{_of(rows)}'), n)
         if kind == "text":
             lines = process.lines(n, seconds, f'{n} rows of {columns} numbers for "{request}"')
             try:
@@ -124,6 +127,12 @@ class Program:
             raise
 
 
+def _of(rows: np.ndarray) -> str:
+    return "" if rows.shape[1] else " without uniforms, as the spec has no dimensions,"
+
+
 def _shown(data: bytes) -> str:
+    if data.startswith(b"{") and b"\n" in data:
+        return f"{data.partition(bytes([10]))[0][:80].decode('utf-8', 'replace')!r} and what follows"
     text = data[:60].decode("latin-1")
     return repr(text) if text.isprintable() or text.strip().isprintable() else f"bytes {data[:16].hex(' ')}"

@@ -66,7 +66,8 @@ def read_greeting(line: bytes) -> Greeting:
     columns, answers = (_words(table, name) for name in ("columns", "answers"))
     known = SAMPLER_COLUMNS if "x" in columns else ESTIMATOR_COLUMNS
     if not columns or ("x" not in columns and "value" not in columns):
-        raise BrokenLineError(f'greets without a column "x" (a sampler) or "value" (an estimator): {shorten(columns)}')
+        got = f"its columns are {', '.join(columns)}" if columns else "it names no columns"
+        raise BrokenLineError(f'greets without a column "x" (a sampler) or "value" (an estimator): {got}')
     for name in columns:
         if name not in known:
             raise BrokenLineError(
@@ -92,6 +93,8 @@ def require_answer(line: bytes, n: int) -> None:
     if "error" in table:
         raise BrokenLineError(f"says: {one_line(str(table['error']))[:500]}", REFUSES)
     got = table.get("n")
+    if "fogproof" in table and got is None:
+        raise BrokenLineError("greets again where an answer was due, as after a new start: it greets once")
     if isinstance(got, bool) or got != n:
         raise BrokenLineError(f"announces {shorten(got)} rows where {n} were asked for")
 

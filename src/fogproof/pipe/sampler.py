@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from fogproof.checks.subject import Precision
+from fogproof.checks.subject import Precision, flags
 from fogproof.contracts import Draw
 from fogproof.domains import Domain
 from fogproof.pipe.blocks import swapped
@@ -34,7 +34,7 @@ def draw_of(rows: np.ndarray, columns: tuple[str, ...], domain: Domain) -> Draw:
         column("pdf"),
         column("weight"),
         column("event"),
-        None if valid is None else valid != 0,
+        None if valid is None else flags("valid", valid, len(rows)),
     )
 
 
@@ -71,7 +71,7 @@ class PipeSampler:
         answer = self.program.ask("sample", rows, count, len(columns), seed, self.parameters)
         draw = draw_of(answer, columns, self.domain)
         if not self._seen and count >= 64:
-            self._seen = True
+            self._seen, self.program.shown = True, draw.x
             hint = misread(self.domain, answer, columns)
             if hint:
                 raise self.program.refuse(*hint)

@@ -5,6 +5,7 @@ A text "$g" stands for the parameter g, wherever a number may: so one file serve
 
 from __future__ import annotations
 
+import inspect
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -120,10 +121,10 @@ _TYPES: dict[str, Any] = {
 }
 
 
-def read_table(path: str | Path) -> dict[str, Any]:
+def read_table(path: str | Path, what: str = "the spec file") -> dict[str, Any]:
     """Return the table of a TOML file."""
     try:
-        return tomllib.loads(read_text(path, "the spec file"))
+        return tomllib.loads(read_text(path, what))
     except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise InvalidInputError(f"{path} is not valid TOML: {error}", str(path)) from None
 
@@ -138,6 +139,8 @@ def spec_of(table: Mapping[str, Any], origin: str, parameters: Mapping[str, floa
     first = {name: values[0] for name, values in family.items()}
     values = {**first, **(own if isinstance(own, dict) else {}), **(parameters or {})}
     filled = {key: _filled(item, values, origin) for key, item in table.items() if key not in ("family", "domain")}
+    if isinstance(filled.get("scene"), str):
+        filled["scene"] = read_table(Path(origin).parent / filled["scene"], "the scene file")
     fields = read_fields(_TYPES, filled, origin)
     fields |= {"events": fields["events"] or {}, "parameters": {**(fields["parameters"] or {}), **values}}
     domain = _domain(_filled(table["domain"], values, origin), origin) if "domain" in table else None
@@ -223,6 +226,7 @@ def _domain(table: Any, origin: str) -> Domain:
         said = f"domain has kind {shorten(kind)}" if isinstance(table, dict) else f"domain is {shorten(table)}"
         raise InvalidInputError(f"{origin}: {said}; known are {', '.join(domains.KINDS)}", "domain")
     rest = {key: _plain(value) for key, value in table.items() if key != "kind"}
+    _require_keys(kind, rest, origin)
     try:
         if kind == "product":
             parts = rest.get("parts", ())
@@ -231,9 +235,23 @@ def _domain(table: Any, origin: str) -> Domain:
     except InvalidValueError as error:
         raise error.inside("domain", origin) from None
     except TypeError as error:
-        told = str(error).replace(f"{domains.KINDS[kind].__name__}.__init__()", kind)
-        raise InvalidInputError(f"{origin}: domain {told}", "domain") from None
+        raise InvalidInputError(
+            f"{origin}: domain {kind} cannot be made of {shorten(rest)}: {error}", "domain"
+        ) from None
     return made
+
+
+def _require_keys(kind: str, given: Mapping[str, Any], origin: str) -> None:
+    """Refuse keys that a domain does not have, and say which ones it has."""
+    product = kind == "product"
+    known = {} if product else dict(inspect.signature(domains.KINDS[kind]).parameters)
+    needed = ["parts"] if product else [name for name, one in known.items() if one.default is one.empty]
+    allowed = needed if product else list(known)
+    wrong = [f"{name} is not a known key" for name in given if name not in allowed]
+    wrong += [f"{name} is missing" for name in needed if name not in given]
+    if wrong:
+        keys = f"its keys are kind, {', '.join(allowed)}" if allowed else "it has no key but kind"
+        raise InvalidInputError(f"{origin}: domain {kind}: {'; '.join(wrong)}; {keys}", "domain")
 
 
 def _plain(value: Any) -> Any:

@@ -45,9 +45,9 @@ class Numbers:
 
 
 def _read(value: Any) -> np.ndarray:
-    array = as_float_array("array", value)
+    array = as_float_array("", value)
     if array.ndim > MOST_AXES:
-        raise InvalidValueError("array", f"must have at most {MOST_AXES} axes", array.ndim)
+        raise InvalidValueError("", f"must have at most {MOST_AXES} axes", array.ndim)
     return array
 
 

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import difflib
 import json
 import math
 import tomllib
@@ -98,13 +99,7 @@ def _with_infinities(value: Any) -> Any:
     return {"inf": math.inf, "-inf": -math.inf}.get(value, value) if isinstance(value, str) else value
 
 
-_REASONS = {
-    "extra_forbidden": "is not a known key",
-    "unexpected_keyword_argument": "is not a known key",
-    "missing": "is missing",
-    "missing_argument": "is missing",
-    "union_tag_not_found": "needs a key 'kind'",
-}
+_UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
 _RULES = {
     "tuple_type": "must be a list",
     "list_type": "must be a list",
@@ -113,44 +108,41 @@ _RULES = {
     "string_type": "must be a text",
     "bool_type": "must be true or false",
 }
-_TOLD = 3
-"""Faults that one sentence tells of; the others are counted."""
 
 
 def _complaint(error: Any, data: Any, origin: str, known: tuple[str, ...]) -> InvalidInputError | InvalidValueError:
-    """Turn pydantic's report into one sentence: the first fault, and the next few where keys are missing or too many.
-
-    known  the keys of the outermost table
-    """
+    """Turn pydantic's report into one sentence; the first fault is told, the others are counted."""
     faults = {_place(fault, data): fault for fault in reversed(error.errors())}
-    (place, fault), *others = reversed(faults.items())
+    place, fault = min(reversed(faults.items()), key=lambda item: item[1]["type"] not in _UNKNOWN)
+    others = [other for other in reversed(faults) if other != place]
+    beside = place.rpartition(".")[0]
+    absent = [other for other in others if other.rpartition(".")[0] == beside and "missing" in faults[other]["type"]]
+    if fault["type"] in _UNKNOWN and absent:  # what is missing beside a key that nobody knows is what was meant
+        others = [other for other in others if other not in absent]
+        more = f", and {', '.join(absent)} {'is' if len(absent) == 1 else 'are'} missing"
+    elif "missing" in fault["type"] and absent:
+        others = [other for other in others if other not in absent]
+        more = f", {', '.join(absent)} too"
+    else:
+        meant = difflib.get_close_matches(place, known, 1) if fault["type"] in _UNKNOWN else []
+        more = f"; did you mean {meant[0]}?" if meant else ""
+    more += f" (and {len(others)} more)" if others else ""
     cause = fault.get("ctx", {}).get("error")
     if isinstance(cause, InvalidValueError):
         return cause.inside(place, origin)
-    missing = [other for other, each in faults.items() if each["type"] in ("missing", "missing_argument")]
-    told = [f"{place} {_reason(place, fault, known, missing)}"]
-    told += [f"{other} {_reason(other, each, known, missing)}" for other, each in others if each["type"] in _REASONS]
-    left = len(faults) - min(len(told), _TOLD)
-    more = f" (and {left} more)" if left else ""
-    return InvalidInputError(f"{origin}: {', '.join(told[:_TOLD])}{more}", place)
-
-
-def _reason(place: str, fault: Any, known: tuple[str, ...], missing: list[str]) -> str:
-    """Return what is wrong with the key at a place; of one that is not known, what it may have been meant for."""
-    import difflib
-
+    reasons = {
+        "extra_forbidden": "is not a known key",
+        "unexpected_keyword_argument": "is not a known key",
+        "missing": "is missing",
+        "missing_argument": "is missing",
+        "union_tag_not_found": "needs a key 'kind'",
+    }
     if fault["type"] == "union_tag_invalid":
-        return f"has kind {shorten(fault['ctx']['tag'])}; known are {fault['ctx']['expected_tags']}"
-    reason = _REASONS.get(fault["type"])
-    if reason is None:
+        reason = f"has kind {shorten(fault['ctx']['tag'])}; known are {fault['ctx']['expected_tags']}"
+    else:
         rule = _RULES.get(fault["type"], _lower(fault["msg"]).replace("input should be", "must be", 1))
-        return f"{rule}, got {shorten(fault['input'])}"
-    if "not a known key" in reason:
-        table, _, key = place.rpartition(".")
-        beside = [other.rpartition(".")[2] for other in missing if other.rpartition(".")[0] == table]
-        near = difflib.get_close_matches(key, beside or (() if table else known), 1)
-        return f"{reason}: did you mean {near[0]}?" if near else reason
-    return reason
+        reason = reasons.get(fault["type"], f"{rule}, got {shorten(fault['input'])}")
+    return InvalidInputError(f"{origin}: {place} {reason}{more}", place)
 
 
 def _place(fault: Any, data: Any) -> str:

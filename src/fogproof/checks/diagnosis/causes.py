@@ -58,4 +58,10 @@ def likely_cause(findings: Iterable[Finding]) -> str:
     named = {f.cause for f in found if f.outcome == "rejected" and f.cause}
     if "atom" in named and any(f.check == "repeated points" and f.outcome == "not rejected" for f in found):
         named = named - {"atom"} | {"shape"}
+    if any(f.check in ("domain", "returned pdf") and f.cause == "coarse numbers" for f in found):
+        return "coarse numbers"  # rounded points are missing where they should be, and edges are rounded too
+    if "repeated samples" in named and any(f.check == "size of the call" for f in found):
+        named = named - {
+            "size of the call"
+        }  # a stream that starts again with every call gives small calls its first points
     return min(named, key=CAUSES.index, default="")
