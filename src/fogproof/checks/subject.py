@@ -179,7 +179,7 @@ def flags(what: str, value: Any, n: int) -> np.ndarray:
 
 def in_domain(domain: Domain, x: np.ndarray, roundoff: float) -> np.ndarray:
     """Return which points lie in the domain, up to a few roundings; NaN and infinity do not."""
-    return domain.contains(x, 16 * roundoff)
+    return np.asarray(call("the domain's contains(x)", domain.contains, x, 16 * roundoff))
 
 
 def nudged(x: np.ndarray, roundoff: float) -> list[np.ndarray]:

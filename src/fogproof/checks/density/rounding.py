@@ -32,12 +32,16 @@ _POLE = 0.02  # of the points, the nearest to a pole
 
 @dataclass(frozen=True)
 class Rounded:
-    """Points (q, ...), copies of them moved as rounding may move them, and the same samples in double precision, if they differ."""
+    """Points (q, ...), copies of them moved as rounding may move them, and the same samples in double precision, if they differ.
+
+    grain  probability between neighbouring values of uniforms of few bits
+    """
 
     points: np.ndarray
     nudges: list[np.ndarray]
     exact: np.ndarray | None
     roundoff: float
+    grain: float = 0.0
 
     @property
     def moved(self) -> list[np.ndarray]:
@@ -56,7 +60,7 @@ def blurred(grid: Grid, chart: Chart, rounded: Rounded) -> Grid:
     for axis, marginal in enumerate(grid.marginals):
         step = _step(marginal, everywhere[axis], rounded)
         others = [counted[axis] - step, counted[axis] + step, *(m[axis] for m in moved)]
-        axes.append(_Axis(marginal, counted[axis], others, step, rounded.exact is not None))
+        axes.append(_Axis(marginal, counted[axis], others, step, rounded.exact is not None, rounded.grain))
     blurs = [axis.blur(None if axis.marginal.ends else axes[1 - k]) for k, axis in enumerate(axes)]
     marginals = tuple(replace(m, blur=blur) for m, blur in zip(grid.marginals, blurs, strict=True))
     plane = grid.plane
@@ -80,6 +84,7 @@ class _Axis:
     others: list[np.ndarray]
     step: float
     exact: bool
+    grain: float
 
     @cached_property
     def at(self) -> np.ndarray:
@@ -95,7 +100,7 @@ class _Axis:
             shifts = [np.minimum(shift, 1 - shift) for shift in shifts]
         if self.exact:
             shifts[-1] = _INSIDE * shifts[-1]
-        return np.asarray(np.max(shifts, axis=0))
+        return np.asarray(np.max(shifts, axis=0)) + self.grain
 
     def near(self, side: int) -> float:
         """Return how far from a pole points are that rounding may move onto it, in the counted coordinate."""
