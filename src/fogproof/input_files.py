@@ -72,7 +72,10 @@ def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def read_text(path: str | Path, what: str) -> str:
-    """Return the UTF-8 text of a regular file of no more than `TEXT` bytes, or raise an `InvalidInputError` that names it."""
+    """Return the UTF-8 text of a regular file of no more than `TEXT` bytes, or raise an `InvalidInputError` that names it.
+
+    The mark that some editors begin UTF-8 with is no part of it.
+    """
     with open_regular(path, what) as file:
         if size_of(file) > TEXT:
             size = f"it has {size_of(file)} bytes, more than {TEXT}"
