@@ -31,6 +31,14 @@ def as_float_array(name: str, value: Any) -> np.ndarray:
         raise InvalidValueError(name, "must be a number or an array of numbers", value, fix) from None
 
 
+def coordinates(name: str, value: Any) -> tuple[float, ...]:
+    """Return the coordinates of one point, whatever sequence they come in."""
+    array = as_float_array(name, value)
+    if array.ndim != 1:
+        raise InvalidValueError(name, "must be the coordinates of a point", value)
+    return tuple(array.tolist())
+
+
 def _is_number(value: Any) -> bool:
     return isinstance(value, numbers.Number) and not isinstance(value, bool | complex)
 

@@ -221,17 +221,19 @@ def test_serial_correlation_has_freedmans_bound_and_counts_its_rivals():
     scores = in_units(u)
     found = serial_test("", Successions.of([scores], False), 1e-6)
     x = scores / 2.0**15
+    mean = max(abs(x.mean()), abs((2 * np.abs(x) - 0.5).mean()))  # of the score, and of its distance from the middle
     x -= x.mean()
-    bound = (0.5 + abs((scores / 2.0**15).mean())) ** 2
-    expected = 2 * freedman(x[:-1] * x[1:], bound, np.mean(x * x) ** 2)
+    bound = (0.5 + mean) ** 2
+    expected = 2 * 4 * freedman(x[:-1] * x[1:], bound, np.mean(x * x) ** 2)
     assert found.p_value == near(min(1.0, expected), rel=5e-2)
     u = rng.random(64 * 400)
     u[17:] = np.where(rng.random(len(u) - 17) < 0.06, u[:-17], u[17:])
     far = serial_test("", Successions.of([in_units(u)], True), 1e-6)
     assert "17 apart" in far.message
     x = np.floor((u - 0.5) * 64) / 64
-    x, mean = x - x.mean(), x.mean()
-    expected = 2 * 64 * freedman(x[:-17] * x[17:], (0.5 + abs(mean)) ** 2, np.mean(x * x) ** 2)
+    fold = np.floor((2 * np.abs(u - 0.5) - 0.5) * 64) / 64
+    x, mean = x - x.mean(), max(abs(x.mean()), abs(fold.mean()))
+    expected = 2 * 64 * 4 * freedman(x[:-17] * x[17:], (0.5 + mean) ** 2, np.mean(x * x) ** 2)
     assert math.log(far.p_value) == near(math.log(expected), rel=0.02)
 
 

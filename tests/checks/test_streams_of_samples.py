@@ -29,7 +29,8 @@ def successions(u, batch=1 << 16):
 def test_lagged_products_are_those_of_a_loop():
     u = np.random.default_rng().random((LAGS * 20 + 7, 2))
     sums = Successions.of([in_units(column) for column in u.T], True)
-    c = (in_units(u) >> 9)[: LAGS * 20]
+    plain = in_units(u)
+    c = (np.concatenate([plain, 2 * np.abs(plain) - 2**14], axis=1) >> 9)[: LAGS * 20]
     for lag in (1, 2, 17, 63, 64):
         expected = c[:-lag].T @ c[lag:]
         assert np.array_equal(sums.lagged[lag - 1], expected)
@@ -178,3 +179,21 @@ def test_rare_values_are_no_correlation():
         for _ in range(60)
     ]
     assert all(v.outcome == "not rejected" for v in verdicts)
+
+
+@pytest.mark.parametrize("dimensions", [1, 2])
+def test_a_stream_without_correlation_that_knows_its_neighbour_is_found(dimensions):
+    """The tent map: uniform, uncorrelated at every lag, and each number follows from the one before."""
+
+    def tent(rng, n):
+        x = np.empty((n, dimensions))
+        x[0] = rng.random(dimensions)
+        for i in range(1, n):
+            x[i] = 1 - np.abs(1 - 2 * x[i - 1]) + 1e-9 * rng.random()  # doubling runs out of bits
+        return np.clip(x[:, 0] if dimensions == 1 else x, 0, 1)
+
+    domain = Interval(0, 1) if dimensions == 1 else UnitSquare()
+    verdict = check_sampler(tent, ones, domain, dimensions=None, samples=20_000)
+    found = next(f for f in verdict.findings if f.check == "serial correlation")
+    assert found.outcome == "rejected", str(verdict)
+    assert "how far from the middle" in found.message

@@ -112,6 +112,7 @@ def test_equiangular_is_the_airlight_of_twice_the_density(sigma, h, a, length):
 
 def test_kinks_and_lorenz_mie():
     """Against a trapezoidal rule cut where the table has kinks, which knows eight digits."""
+    pytest.importorskip("miepython", reason="python -m pip install 'fogproof[mie]'")
     table = Tabulated.normalised((-1, 0, 0.3, 1), (1, 0, 0, 2))
     cuts = [-1.5, -0.4 * 0.3 / math.sqrt(1 - 0.09), 0.0, 2.5]
     pieces = [np.linspace(low, high, 30_001) for low, high in pairwise(cuts)]

@@ -149,6 +149,7 @@ def test_fitted_droplets(micrometres):
 
 def test_fitted_droplets_resemble_the_exact_ones():
     """Tiny ones scatter as Rayleigh's, those of clouds with the mean cosine of Lorenz-Mie."""
+    pytest.importorskip("miepython", reason="python -m pip install 'fogproof[mie]'")
     rayleigh = 3 / (16 * np.pi) * (1 + MU**2)
     assert np.allclose(phase_pdf(ApproximateMie(1e-9), MU).value, rayleigh, rtol=0.01)
     exact = [phase_mean_cosine(Mie(12e-6 * s, 550e-9, 1.333)).value for s in (0.95, 1.0, 1.05)]

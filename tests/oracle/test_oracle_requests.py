@@ -8,6 +8,7 @@ from types import FunctionType
 
 import jsonschema
 import numpy as np
+import pydantic
 import pytest
 
 from fogproof import HenyeyGreenstein, analytic
@@ -72,6 +73,8 @@ def published():
 
 
 def test_the_published_schema_is_current(published):
+    if tuple(map(int, pydantic.VERSION.split(".")[:2])) < (2, 11):
+        pytest.skip(f"pydantic {pydantic.VERSION} writes the same schema in other words")
     assert published == json.loads(json.dumps(schema())), "run: fogproof oracle --schema > schemas/oracle-1.json"
     jsonschema.Draft202012Validator.check_schema(published)
 

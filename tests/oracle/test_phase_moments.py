@@ -131,6 +131,10 @@ def test_mixtures_and_series():
     assert np.all(np.abs(mixed.value - means) <= mixed.error + 1e-15)
     same = phase_legendre_moments(DoubleHenyeyGreenstein(0.8, 0.8, 0.3), 64)
     assert np.all(np.abs(same.value - 0.8 ** np.arange(65)) <= same.error + 1e-18)
+
+
+def test_moments_of_a_droplet_and_the_series_of_them():
+    pytest.importorskip("miepython", reason="python -m pip install 'fogproof[mie]'")
     droplet = Mie(1.2e-6, 550e-9, 1.333)
     moments, mean = phase_legendre_moments(droplet, 60), phase_mean_cosine(droplet)
     assert abs(moments.value[1] - mean.value) <= moments.error[1] + mean.error

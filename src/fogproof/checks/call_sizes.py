@@ -49,9 +49,11 @@ def one_law(name: str, subject: Subject, calls: Points, pilot: np.ndarray, seed:
     law, rng = subject.domain.law(pilot), batch_generator(seed, "sizes", 1, 0)
     n = len(pilot)
     large = np.sort(law.coordinates(pilot, rng.random((n, len(law.axes)))), axis=0)
-    rivals, worst, message = max(len(calls) * len(law.axes), 1), (1.0, 0.0), "no call of a few samples is answered"
+    rivals, worst, message = max(len(calls) * len(law.axes), 1), (1.0, 0.0), "no call of a few samples gives points"
     for size, points in calls.items():
         m = len(points)
+        if not (m and n):  # all at atoms
+            continue
         small = np.sort(law.coordinates(points, rng.random((m, len(law.axes)))), axis=0)
         for axis, label in enumerate(law.axes):
             distance = _distance(small[:, axis], large[:, axis])

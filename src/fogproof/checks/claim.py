@@ -32,6 +32,8 @@ _COARSE = 50.0  # times the error that is never rejected: an integral known no b
 _MOST = 2048  # points of one kind that are compared with the polynomials
 _PLAINLY = 2.0  # an integral above it is not 1
 _CONFIRMED = 0.1  # relative: as near as evenly spread points come to an integral that is one
+_LAST = 2.0**-50  # of an end: a few floating-point numbers from it
+_STRONGEST = 0.01  # 1 less the power of a pole that has a finite integral
 _STRANGE = 0.01  # share of the pilot that may not be as the polynomials have it
 
 
@@ -69,6 +71,7 @@ def claimed(subject: Subject, chart: Chart, points: np.ndarray, samples: int, ro
     ranges = _ranges(chart, leaves, grid, density)
     floor = (FLOOR[subject.precision] + rounding) * _height(subject, leaves.total, points)
     doubt = _doubt(leaves, floor, lambda: second_view(chart, density, pilot, work))
+    doubt = doubt or _within_rounding(subject, chart, floor)
     doubt = doubt or _strange(subject, chart, density, leaves, work, points)
     return Claim(chart, density, work, rounding, leaves, grid, ranges, doubt)
 
@@ -99,6 +102,26 @@ def _doubt(leaves: Leaves, floor: float, again: Callable[[], Leaves]) -> str:
     other = again()
     if not abs(leaves.total - other.total) <= floor + leaves.total_error + other.total_error:
         return f"{words} and, over other boxes, {other.total:.6g} +- {other.total_error:.1g}"
+    return ""
+
+
+def _within_rounding(subject: Subject, chart: Chart, floor: float) -> str:
+    """Return at which end of a line the pdf diverges so that the last few floating-point numbers hold more than `floor`.
+
+    There the integral over real numbers and that over floating-point ones differ. A pole at 0 has numbers as fine as it needs.
+    """
+    if len(chart.axes) > 1 or not chart.axes[0].ends:
+        return ""
+    for end, inwards in ((chart.axes[0].low, 1.0), (chart.axes[0].high, -1.0)):
+        x = float(chart.to_point(np.array([[end]]))[0])
+        step = _LAST * abs(x)
+        if not (np.isfinite(x) and step > 0):
+            continue
+        near, far = subject.density(x + inwards * step * np.array([1.0, 2.0]))
+        power = float(np.log2(near / far)) if 0 < far < near < np.inf else 0.0
+        mass = near * step / max(1 - power, _STRONGEST)  # of a power of the distance, from 0 to it
+        if power > 0 and mass > floor:
+            return f"the pdf diverges at x = {x:.6g}, and numbers there are so coarse that the last few hold {mass:.2g} of it"
     return ""
 
 

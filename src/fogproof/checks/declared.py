@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, get_args
 
 import numpy as np
 
+from fogproof.checks.density.lattice import lattice
 from fogproof.checks.streams import fresh_seed
-from fogproof.checks.subject import Precision, Subject
+from fogproof.checks.subject import UNIT_ROUNDOFF, Precision, Subject, in_domain
 from fogproof.domains import Discrete, Domain
 from fogproof.errors import InvalidValueError
 from fogproof.validate import number, unit_vectors
 
+_SPREAD = 1 << 12  # points that show how large a domain is
+_SURE = 6.0  # standard deviations, as if they were drawn by chance: they are more even
 _LEAST_ALPHA = 1e-100  # tails of the tests' laws are accurate some way beyond
 
 
@@ -34,6 +38,7 @@ def declared(
         raise InvalidValueError("domain", "must be a domain", subject.domain, f"write {subject.domain.__name__}(...)")
     if not isinstance(subject.domain, Domain):
         raise InvalidValueError("domain", "must be one of fogproof.domains, or have its parts", subject.domain)
+    _check_measure(subject.domain)
     dimensions = subject.dimensions
     if dimensions is not None:
         dimensions = whole("dimensions", dimensions, 1, "or None for sample(rng, n)")
@@ -64,13 +69,38 @@ def _check_atoms_and_events(subject: Subject) -> None:
     if subject.atoms and isinstance(subject.domain, Discrete):
         raise InvalidValueError("atoms", "need a density: on Discrete the pdf is a probability", subject.domain)
     for point in subject.atoms:
-        if np.shape(point) != subject.domain.shape:
-            raise InvalidValueError("atoms", f"must be points of {subject.domain}", point)
+        if np.shape(point) != subject.domain.shape or not _in_reach(subject, point):
+            rule = f"must be points of {subject.domain}, or inf"
+            raise InvalidValueError("atoms", rule, point, "a larger domain has it; inf is where a path leaves")
     _probabilities("atoms", subject.atoms)
+    atoms = sum(subject.atoms.values())
+    if atoms > 1 + 1e-9:
+        raise InvalidValueError("atoms", "must have probabilities that sum to 1 at most", atoms)
     _probabilities("events", subject.events)
     events = sum(subject.events.values())
     if subject.events and abs(events - 1) > 1e-9:
         raise InvalidValueError("events", "must have probabilities that sum to 1", events, "declare every label")
+
+
+def _in_reach(subject: Subject, point: Any) -> bool:
+    """Return whether an atom is a point of the domain, as single precision may round it, or at infinity on a line."""
+    x = np.asarray([point], dtype=np.float64)
+    at_infinity = x.ndim == 1 and bool(np.isinf(x[0]))
+    return at_infinity or bool(in_domain(subject.domain, x, UNIT_ROUNDOFF["float32"])[0])
+
+
+def _check_measure(domain: Domain) -> None:
+    """Hold a finite measure to evenly spread points of the known law: whoever recognises a part may know its size wrongly."""
+    law = domain.law(np.empty((0, *domain.shape)))
+    if law.stepped or not np.isfinite(domain.measure):
+        return
+    x = law.place(lattice(_SPREAD, len(law.axes), np.full(len(law.axes), 0.5)))
+    each = 1 / (law.density(x) * domain.measure)
+    share = np.where(in_domain(domain, x, UNIT_ROUNDOFF["float64"]), each, 0.0)
+    error = _SURE * (float(share.std()) + float(each.max()) / math.sqrt(_SPREAD)) / math.sqrt(_SPREAD)
+    if abs(float(share.mean()) - 1) > error:
+        rule = f"must have the measure of what it contains, about {share.mean() * domain.measure:.4g}"
+        raise InvalidValueError("domain", rule, domain, "leave the measure out where it is not known")
 
 
 def _breaks(subject: Subject) -> dict[str, np.ndarray]:
@@ -116,6 +146,10 @@ def unchecked(subject: Subject, channels: int, labels: bool) -> tuple[str, ...]:
     labels    whether event labels are returned
     """
     found = []
+    if subject.albedo is not None and not channels and subject.eval is None:
+        found.append("albedo (the sampler returns no weights, and eval is not given)")
+    if subject.axis is not None and subject.domain.shape != (3,):
+        found.append("axis (the points are no directions)")
     if channels and subject.eval is None and subject.albedo is None:
         found.append("weights (declare eval, albedo, or both)")
     if labels and not subject.events and not subject.atoms:

@@ -1,7 +1,8 @@
 """What a sampler does with extreme uniforms: 0, the smallest denormal, 1/2 and the largest number below 1.
 
 In up to four dimensions all their combinations are tried; in more, one axis at a time beside ordinary uniforms, and corners. The
-answers must keep every promise that ordinary samples keep; a density of 0 is allowed at the very edge of its support alone.
+answers must keep every promise that ordinary samples keep; a density of 0 is allowed at the very edge of its support alone, and at
+an isolated zero inside it.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from fogproof.errors import SubjectError, shorten
 _NAME, _CAUSE = "edge uniforms", "edge of the uniforms"
 _ALL_COMBINATIONS = 4  # dimensions up to which all are tried
 _CORNERS = 64  # tried beyond
-_INWARDS = 2.0**-20  # from an edge: what the sampler does there is no edge case
+_INWARDS = 2.0**-20  # from an edge, or from 1/2 either way: what the sampler does there is no edge case
 _APPROACH = {"float64": ((500, 1000), (26, 52)), "float32": ((48, 96), (12, 24))}  # uniforms 2^-k that come near 0
 _CLOSER = (0.98, 0.75)  # times as far from the limit as before: what jumps at the edge stays where it is
 _TOWARDS = (2.0**-8, 2.0**-16, 2.0**-24, 2.0**-32)  # of the way to that point, where the support must have begun
@@ -101,12 +102,14 @@ def _holes(subject: Subject, u: np.ndarray, draw: Draw) -> np.ndarray:
 
 def _begins(subject: Subject, u: np.ndarray, x: np.ndarray) -> np.ndarray:
     """Return (n,) whether the support begins at x, on the way to what ordinary uniforms beside u give."""
-    near = subject.draw_at(np.clip(u, _INWARDS, 1 - _INWARDS).astype(u.dtype)).x
-    law, half = subject.domain.law(near), np.full((len(x), 1), 0.5)
-    begin, end = law.coordinates(x, half), law.coordinates(near, half)
-    begun = np.zeros(len(x), dtype=bool)
-    for share in _TOWARDS:
-        begun |= subject.density(law.place(np.minimum(begin + share * (end - begin), 1 - 2.0**-53))) > 0
+    begun, half = np.zeros(len(x), dtype=bool), np.full((len(x), 1), 0.5)
+    for side in (_INWARDS, -_INWARDS):
+        beside = np.clip(u + side * (u == 0.5), _INWARDS, 1 - _INWARDS)
+        near = subject.draw_at(beside.astype(u.dtype)).x
+        law = subject.domain.law(near)
+        begin, end = law.coordinates(x, half), law.coordinates(near, half)
+        for share in _TOWARDS:
+            begun |= subject.density(law.place(np.minimum(begin + share * (end - begin), 1 - 2.0**-53))) > 0
     return begun
 
 

@@ -11,6 +11,7 @@ from fogproof.checks.statistics.repeats import coarse_test
 from fogproof.checks.subject import Subject, nudged
 from fogproof.checks.verdict import Finding
 
+_SPOILT = 1e-4  # of a law, in one step: as much as any check here may see
 _NUDGED = 2048  # points that show what rounding does to a coordinate
 
 
@@ -32,6 +33,15 @@ def few_values(name: str, subject: Subject, axis: str, pilot: np.ndarray, points
     moves = [np.abs(coordinate(moved) - coordinate(shown)) for moved in nudged(shown, subject.roundoff)]
     moves = [np.minimum(move, 1 - move) for move in moves]
     rounding = float(np.median(np.max(moves, axis=0))) if len(shown) else 0.0
-    if subject.precision == "float32":  # its cosines may have been rounded before they became points
-        rounding += 4 * subject.roundoff
-    return coarse_test(name, axis, coordinate(points), rounding, subject.bits, alpha)
+    t = coordinate(points)
+    if subject.precision == "float32" or _finer(t, subject.roundoff):
+        rounding += 4 * subject.roundoff  # a cosine may have been rounded before it became a point
+    return coarse_test(name, axis, t, rounding, subject.bits, alpha)
+
+
+def _finer(t: np.ndarray, roundoff: float) -> bool:
+    """Return whether the steps of a rounded cosine are so small a part of the values (n,) that they spoil no law."""
+    if len(t) == 0:
+        return False
+    low, high = np.quantile(t, [0.1, 0.9])
+    return bool(2 * roundoff < _SPOILT * (high - low))

@@ -29,6 +29,14 @@ def supported(subject: Subject, points: np.ndarray) -> tuple[Subject, str]:
     if support is None:
         return subject, ""
     law = subject.domain.law(points)
+    own = support.law(points)
+    y = own.place(lattice(_SPREAD, len(own.axes), np.full(len(own.axes), 0.5)))
+    beyond = in_domain(support, y, subject.roundoff) & ~in_domain(subject.domain, y, subject.roundoff)
+    if beyond.any():
+        return (
+            subject,
+            f"support (not used: {shorten(y[np.argmax(beyond)])} belongs to it, and not to {subject.domain})",
+        )
     x = law.place(lattice(_SPREAD, len(law.axes), np.full(len(law.axes), 0.5)))
     x = x[in_domain(subject.domain, x, subject.roundoff)]
     for what, y in (("a sample is", points), ("the pdf is not 0 at", x)):

@@ -29,6 +29,7 @@ _ROUNDS = 3  # of following
 _LEAST_PILOT = 1 << 14  # points that a histogram is made of, at least
 _FOLLOWED = 0.25  # share of the points that follow what the pilot has not seen
 _MOVED = 1e-2  # relative change of the pdf by rounding, from which on its value says nothing
+_FEW = 1e-3  # of the points: so many may lie so near the edges of their cells
 _SIX = 6.0  # standard deviations
 
 
@@ -40,6 +41,7 @@ class MixtureTest:
     seed     of the check
     most     batches that are mixed: the first so many
     rounded  whether the pdf changes much by rounding somewhere: such points are left out
+    steps    the same of the histogram, whose cells are no larger than the steps of the points far from the origin
     """
 
     subject: Subject
@@ -48,14 +50,18 @@ class MixtureTest:
     seed: int
     most: int
     rounded: bool
+    steps: bool = False
 
     @staticmethod
     def of(subject: Subject, law: Law, points: np.ndarray, seed: int, most: int) -> MixtureTest:
         """Return the mixture that follows pilot points (n, ...) of the domain."""
         rng = batch_generator(seed, "labels", 0, 0)
         u = law.coordinates(points, rng.random((len(points), len(law.axes))))
-        rounded = len(points) > 0 and not law.stepped and bool(_moved(subject, points[:_CHECKED]).any())
-        return MixtureTest(subject, law, Tree.of(u, _PER_LEAF), seed, most, rounded)
+        rounded = len(points) > 0 and not law.stepped and bool(moved_by_rounding(subject, points[:_CHECKED]).any())
+        mixture = MixtureTest(subject, law, Tree.of(u, _PER_LEAF), seed, most, rounded)
+        if subject.precision != "float32" or law.stepped or len(points) == 0:
+            return mixture
+        return replace(mixture, steps=bool(np.mean(mixture._across(points[:_CHECKED])) > _FEW))
 
     def wider(self, points: np.ndarray) -> MixtureTest:
         """Return the mixture that also follows the pdf where it is high and no pilot point was: evenly spread points find it."""
@@ -145,13 +151,24 @@ class MixtureTest:
             w = ratio / (1 + ratio)
         telling = np.isfinite(ratio) & (ratio > 0)
         if self.rounded:
-            telling &= ~_moved(self.subject, points)
+            telling &= ~moved_by_rounding(self.subject, points)
+        if self.steps:
+            telling &= ~self._across(points)
         theirs = ratio[len(used) :]
         theirs = np.where(telling[len(used) :], theirs, 0.0)
         ratios = np.array([tosses - samples, theirs.sum(), np.square(theirs).sum()])
         if not telling.all():
             labels, w, leaf = labels[telling], w[telling], leaf[telling]
         return Sums.of(labels, w, leaf, len(self.tree.share), ratios)
+
+    def _across(self, points: np.ndarray) -> np.ndarray:
+        """Return (n,) which points rounding may move into another cell of the histogram."""
+        k = len(self.law.axes)
+        leaf = self.tree.leaf(self.law.coordinates(points, np.full((len(points), k), 0.5)))
+        across = np.zeros(len(points), dtype=bool)
+        for near in nudged(points, self.subject.roundoff):
+            across |= self.tree.leaf(self.law.coordinates(near, np.full((len(near), k), 0.5))) != leaf
+        return across
 
     def known(self, rng: np.random.Generator, n: int) -> tuple[np.ndarray, np.ndarray]:
         """Return n points of the known law and its density (n,) there."""
@@ -182,10 +199,10 @@ class MixtureTest:
         return f"about ({', '.join(f'{c:.6g}' for c in middle)})"
 
 
-def _moved(subject: Subject, points: np.ndarray) -> np.ndarray:
+def moved_by_rounding(subject: Subject, points: np.ndarray) -> np.ndarray:
     """Return (n,) where the pdf changes so much by rounding of the point that its value there says nothing."""
     p = subject.density(points)
-    moved = np.zeros(len(points), dtype=bool)
+    moved = np.isinf(p)
     for near in nudged(points, subject.roundoff):
         with np.errstate(all="ignore"):
             moved |= ~(np.abs(subject.density(near) - p) <= _MOVED * p) & (p > 0)

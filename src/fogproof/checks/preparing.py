@@ -28,15 +28,17 @@ from fogproof.checks.pilot import LARGE_PILOT, PILOT, Pilot, draw_pilot
 from fogproof.checks.prepared import Prepared
 from fogproof.checks.probes import pdf_twice, precision_agreement, reference_agreement, support_of_eval, writing
 from fogproof.checks.promises import at_any_atom, inside
-from fogproof.checks.purity import purity
+from fogproof.checks.purity import heeds_generator, purity
 from fogproof.checks.statistics.serial import in_units
 from fogproof.checks.streams import batch_generator
 from fogproof.checks.subject import Subject, nudged
 from fogproof.checks.table import table_grid
 from fogproof.checks.verdict import Finding
 from fogproof.domains import Discrete
+from fogproof.errors import InvalidValueError
 
 _MOST_ENTRIES = 1 << 22  # of a table that is summed over
+_STEPS = 2.0  # of declared uniforms of few bits: a sample is made of one or two that matter
 _PRECISION_POINTS = 4096
 _CANCELLED = 4.0  # units in the last place of an axis that single precision may lose
 
@@ -44,6 +46,10 @@ _CANCELLED = 4.0  # units in the last place of an axis that single precision may
 def prepare(subject: Subject, samples: int, seed: int) -> Prepared:
     """Integrate the claim, lay out cells for up to `samples` samples, and ask all single questions."""
     pilot = draw_pilot(subject, seed)
+    channels = len(np.atleast_1d(np.asarray(subject.albedo, dtype=float))) if subject.albedo is not None else 1
+    if pilot.channels and channels not in (1, pilot.channels):
+        rule = f"must be one number, or one a channel of the weights, {pilot.channels}"
+        raise InvalidValueError("albedo", rule, subject.albedo)
     subject, written = writing(subject, pilot.points)
     subject, no_support = supported(subject, pilot.points)
     no_inverse = why_not_inverse(subject, pilot.points)
@@ -99,6 +105,8 @@ def _questions(subject: Subject, pilot: Pilot, seed: int) -> list[Finding]:
     findings = []
     if subject.dimensions is None:
         findings.append(no_edge_uniforms())
+        if subject.pilot is None:  # of samples that are there already no generator has a say
+            findings.append(heeds_generator(subject, seed))
     else:
         uniforms = subject.uniforms(batch_generator(seed, "samples", 0, 0), PILOT)
         findings += [*purity(subject, uniforms), edge_uniforms(subject, pilot.labels)]
@@ -130,7 +138,8 @@ def _rounded(subject: Subject, points: np.ndarray, seed: int) -> Rounded:
         both &= ~at_any_atom(subject, single.x) & ~at_any_atom(subject, double.x)
         if not np.array_equal(single.x[both], double.x[both]):
             shown, exact = single.x[both], double.x[both]
-    return Rounded(shown, nudged(shown[:ROUNDED], subject.roundoff), exact, subject.roundoff)
+    grain = 0.0 if subject.uniform_bits is None else _STEPS * 2.0**-subject.uniform_bits
+    return Rounded(shown, nudged(shown[:ROUNDED], subject.roundoff), exact, subject.roundoff, grain)
 
 
 def _independent(grid: Grid) -> bool:

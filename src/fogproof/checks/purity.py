@@ -12,11 +12,14 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from fogproof.checks.streams import batch_generator
 from fogproof.checks.subject import Subject
 from fogproof.checks.verdict import Finding
 from fogproof.contracts import Draw
 from fogproof.errors import SubjectError
 
+_GENERATOR = "function of its generator"
+_HEARD, _TELLING = 256, 8  # samples, and different ones among them that chance does not repeat
 _ROWS = 1000  # asked about again
 _CALLS = {1: 16, 10: 8, _ROWS: 1}  # rows of a call: how many such calls
 _TOLERANCE = {
@@ -40,6 +43,17 @@ def purity(subject: Subject, u: np.ndarray) -> list[Finding]:
     sizes = ", ".join(str(size) for size in _CALLS)
     message = f"{min(_ROWS, len(u))} rows give the same answers twice, shuffled, and in calls of {sizes}"
     return [Finding("function of its uniforms", "not rejected", f"{message}{_idle(subject, kept, draw)}")]
+
+
+def heeds_generator(subject: Subject, seed: int) -> Finding:
+    """Return whether a sampler that draws its own uniforms gives other samples for another generator."""
+    first, second = (subject.draw(batch_generator(seed, "purity", 0, index), _HEARD).x for index in range(2))
+    if np.array_equal(first, second, equal_nan=True) and len(np.unique(first, axis=0)) >= _TELLING:
+        message = f"two generators give the same {_HEARD} samples: the one that sample(rng, n) is given is ignored"
+        return Finding(_GENERATOR, "rejected", message, cause="ignores its generator")
+    return Finding(
+        _GENERATOR, "not rejected", f"two generators give different samples, or one of fewer than {_TELLING} points"
+    )
 
 
 def _faults(subject: Subject, u: np.ndarray, draw: Draw) -> Iterator[tuple[str, str]]:
@@ -111,9 +125,10 @@ def _differs(a: Draw, b: Draw, precision: str) -> tuple[str, float]:
         if one.shape != two.shape:
             return name, 1.0
         first, second = one.reshape(len(one), -1).astype(float), two.reshape(len(two), -1).astype(float)
-        same = (first == second) | (np.isnan(first) & np.isnan(second))
+        same = first == second
         if same.all():  # the usual answer, for which nobody needs to know how much would be allowed
             continue
+        same |= np.isnan(first) & np.isnan(second)
         with np.errstate(invalid="ignore"):
             same |= np.abs(first - second) <= _allowed(first, precision)
         share = float(np.mean(~same.all(axis=1)))

@@ -8,7 +8,8 @@ import numpy as np
 
 from fogproof.domains.law import Law, squared
 from fogproof.domains.sphere import TURN, azimuth, direction, versine
-from fogproof.validate import number
+from fogproof.errors import InvalidValueError
+from fogproof.validate import coordinates, number
 
 
 @dataclass(frozen=True)
@@ -22,6 +23,10 @@ class Ball:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "radius", number("radius", self.radius, "must be > 0", 0, open_ends=True))
+        center = coordinates("center", self.center)
+        if len(center) != 3 or not np.isfinite(center).all():
+            raise InvalidValueError("center", "must be three finite numbers", self.center)
+        object.__setattr__(self, "center", center)
 
     @property
     def measure(self) -> float:

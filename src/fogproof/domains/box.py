@@ -10,6 +10,7 @@ import numpy as np
 
 from fogproof.domains.law import Law
 from fogproof.errors import InvalidValueError
+from fogproof.validate import coordinates
 
 _NAMES = "xyz"
 
@@ -34,7 +35,7 @@ def uniform(low: np.ndarray, high: np.ndarray) -> Law:
 
 
 def _corners(low: Sequence[float], high: Sequence[float]) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    lows, highs = tuple(float(a) for a in low), tuple(float(b) for b in high)
+    lows, highs = coordinates("low", low), coordinates("high", high)
     if len(lows) < 1 or not all(math.isfinite(a) for a in lows):
         raise InvalidValueError("low", "must be one or more finite numbers", low)
     if len(highs) != len(lows) or not all(a < b < math.inf for a, b in zip(lows, highs, strict=False)):
@@ -99,9 +100,9 @@ class Rectangle:
     shape = (2,)
 
     def __post_init__(self) -> None:
-        if len(self.low) != 2:
-            raise InvalidValueError("low", "must be two numbers", self.low, fix="use Box for more")
         low, high = _corners(self.low, self.high)
+        if len(low) != 2:
+            raise InvalidValueError("low", "must be two numbers", self.low, fix="use Box for more")
         object.__setattr__(self, "low", low)
         object.__setattr__(self, "high", high)
 

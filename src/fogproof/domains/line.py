@@ -73,6 +73,8 @@ class Interval:
         object.__setattr__(self, "b", number("b", self.b, "must be finite", fix="use HalfLine or RealLine"))
         if not self.a < self.b:
             raise InvalidValueError("b", f"must be greater than a = {self.a}", self.b)
+        if not math.isfinite(self.b - self.a):
+            raise InvalidValueError("b", f"must be so near a = {self.a} that b - a is finite", self.b, "use RealLine")
 
     @property
     def measure(self) -> float:

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from fogproof.domains.law import Law, squared
+from fogproof.errors import InvalidValueError
+from fogproof.validate import number
 
 TURN = 2 * np.pi
 _LENGTH = (
@@ -93,6 +95,16 @@ class SpherePart:
 
     shape = (3,)
 
+    def __post_init__(self) -> None:
+        if not callable(self.inside):
+            raise InvalidValueError("inside", "must be a function of directions", self.inside)
+        if not (isinstance(self.solid_angle, float) and math.isnan(self.solid_angle)):
+            rule = "must be a solid angle in (0, 4 pi]"
+            angle = number("solid_angle", self.solid_angle, rule, 0, 2 * TURN * (1 + 1e-12))
+            if angle == 0:
+                raise InvalidValueError("solid_angle", rule, angle)
+            object.__setattr__(self, "solid_angle", angle)
+
     @property
     def measure(self) -> float:
         """The solid angle."""
@@ -100,7 +112,10 @@ class SpherePart:
 
     def contains(self, x: np.ndarray, slack: float) -> np.ndarray:
         """Return which vectors have length 1 and are recognised."""
-        return unit(x, slack) & np.asarray(self.inside(x), dtype=bool)
+        recognised = np.asarray(self.inside(x))
+        if recognised.shape != (len(x),):
+            raise InvalidValueError("inside", f"must return one bool a direction, ({len(x)},)", recognised.shape)
+        return unit(x, slack) & recognised.astype(bool)
 
     def law(self, pilot: np.ndarray) -> Law:
         """Return the uniform law on the whole sphere."""

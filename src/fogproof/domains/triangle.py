@@ -8,6 +8,7 @@ import numpy as np
 
 from fogproof.domains.law import Law
 from fogproof.errors import InvalidValueError
+from fogproof.validate import coordinates
 
 
 @dataclass(frozen=True)
@@ -23,7 +24,7 @@ class Triangle:
 
     def __post_init__(self) -> None:
         for name in ("a", "b", "c"):
-            object.__setattr__(self, name, tuple(map(float, getattr(self, name))))
+            object.__setattr__(self, name, coordinates(name, getattr(self, name)))
         if len(self.a) not in (2, 3) or not len(self.a) == len(self.b) == len(self.c):
             raise InvalidValueError("a", "must be two or three numbers, as many as b and c", self.a)
         if not self.measure > 0:

@@ -32,12 +32,16 @@ _POLE = 0.02  # of the points, the nearest to a pole
 
 @dataclass(frozen=True)
 class Rounded:
-    """Points (q, ...), copies of them moved as rounding may move them, and the same samples in double precision, if they differ."""
+    """Points (q, ...), copies of them moved as rounding may move them, and the same samples in double precision, if they differ.
+
+    grain  probability between neighbouring values of uniforms of few bits
+    """
 
     points: np.ndarray
     nudges: list[np.ndarray]
     exact: np.ndarray | None
     roundoff: float
+    grain: float = 0.0
 
     @property
     def moved(self) -> list[np.ndarray]:
@@ -56,7 +60,7 @@ def blurred(grid: Grid, chart: Chart, rounded: Rounded) -> Grid:
     for axis, marginal in enumerate(grid.marginals):
         step = _step(marginal, everywhere[axis], rounded)
         others = [counted[axis] - step, counted[axis] + step, *(m[axis] for m in moved)]
-        axes.append(_Axis(marginal, counted[axis], others, step, rounded.exact is not None))
+        axes.append(_Axis(marginal, counted[axis], others, step, rounded.exact is not None, rounded.grain))
     blurs = [axis.blur(None if axis.marginal.ends else axes[1 - k]) for k, axis in enumerate(axes)]
     marginals = tuple(replace(m, blur=blur) for m, blur in zip(grid.marginals, blurs, strict=True))
     plane = grid.plane
@@ -80,22 +84,34 @@ class _Axis:
     others: list[np.ndarray]
     step: float
     exact: bool
+    grain: float
 
     @cached_property
     def at(self) -> np.ndarray:
         """The probability below each point, (q,)."""
-        return np.interp(self.counted, self.marginal.edges, self.marginal.cdf)
+        return self._probability(self.counted)
 
     @cached_property
     def shift(self) -> np.ndarray:
         """How far rounding moves each point, (q,), in probability."""
-        m, at = self.marginal, self.at
-        shifts = [np.abs(np.interp(o, m.edges, m.cdf) - at) for o in self.others]
-        if not m.ends:
+        at = self.at
+        shifts = [np.abs(self._probability(other) - at) for other in self.others]
+        if not self.marginal.ends:
             shifts = [np.minimum(shift, 1 - shift) for shift in shifts]
         if self.exact:
             shifts[-1] = _INSIDE * shifts[-1]
-        return np.asarray(np.max(shifts, axis=0))
+        return np.asarray(np.max(shifts, axis=0)) + self.grain
+
+    @cached_property
+    def order(self) -> np.ndarray:
+        """The points along the axis, (q,)."""
+        return np.argsort(self.counted)
+
+    def _probability(self, counted: np.ndarray) -> np.ndarray:
+        """Return the probability below coordinates (q,); looked up along the axis, which is several times faster."""
+        result = np.empty(len(counted))
+        result[self.order] = np.interp(counted[self.order], self.marginal.edges, self.marginal.cdf)
+        return result
 
     def near(self, side: int) -> float:
         """Return how far from a pole points are that rounding may move onto it, in the counted coordinate."""

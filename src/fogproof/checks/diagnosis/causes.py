@@ -11,6 +11,7 @@ CAUSES = (
     "writes into its points",
     "hidden state",
     "ignores its uniforms",
+    "ignores its generator",
     "order of the rows",
     "size of the call",
     "not a number",
@@ -49,6 +50,9 @@ CAUSES = (
 """All causes a finding may name, the most telling first: what explains most of the others."""
 
 
+_BULK = {"shape", "sign convention"}  # what is found where atoms have no part in it
+
+
 def likely_cause(findings: Iterable[Finding]) -> str:
     """Return the most telling cause among the rejected findings, "" if nothing was rejected.
 
@@ -56,6 +60,8 @@ def likely_cause(findings: Iterable[Finding]) -> str:
     """
     found = list(findings)
     named = {f.cause for f in found if f.outcome == "rejected" and f.cause}
+    if "wrong probability of an atom" in named and named & _BULK:  # the law between the atoms is wrong, and so are they
+        named = named - {"wrong probability of an atom"}
     if "atom" in named and any(f.check == "repeated points" and f.outcome == "not rejected" for f in found):
         named = named - {"atom"} | {"shape"}
     if any(f.check in ("domain", "returned pdf") and f.cause == "coarse numbers" for f in found):

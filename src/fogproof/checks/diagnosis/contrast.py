@@ -7,6 +7,7 @@ likelihood, and residuals in cells that tell how much it leaves unexplained. No 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,6 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from fogproof.checks.density.tree import Tree
+from fogproof.checks.mixture import moved_by_rounding
 from fogproof.checks.promises import at_any_atom, inside
 from fogproof.checks.subject import Subject, in_domain
 from fogproof.domains import Law
@@ -25,6 +27,7 @@ _ANYWHERE = 0.2  # share of the known law that is the domain's own
 _BACKGROUND = 1e-4  # of the known law is added to every density: one stray point refutes none
 _CELLS = 256
 _PER_CELL = 64  # points in a cell, at least
+_ROUNDED = 1 << 12  # pilot points at which the effect of rounding is looked at
 _THIN = 16  # every so manyth point tells the constant well enough to begin with
 
 
@@ -36,12 +39,14 @@ class Fit:
     constant    by which the density had to be multiplied
     left        chi-square of the residuals in cells, less its degrees of freedom
     freedom     of that chi-square
+    doubt       standard error of the logarithm of the constant
     """
 
     likelihood: float
     constant: float
     left: float
     freedom: int
+    doubt: float
 
 
 @dataclass(frozen=True)
@@ -73,6 +78,12 @@ class Contrast:
         leaf = tree.leaf(coordinates)
         share = anywhere / len(x)
         q = law.density(both) * (share + (1 - share) * tree.density(coordinates, leaf))
+        if not law.stepped and moved_by_rounding(subject, pilot[:_ROUNDED]).any():  # their density says nothing
+            telling = in_domain(subject.domain, both, subject.roundoff)
+            telling[telling] = ~moved_by_rounding(subject, both[telling])
+            x, z, q, leaf = x[telling[: len(x)]], z[telling[len(x) :]], q[telling], leaf[telling]
+            if min(len(x), len(z)) < _PER_CELL:
+                return None
         cells = min(_CELLS, max(len(x) // _PER_CELL, 1), len(tree.share))
         return Contrast(law, tree, x, z, q, leaf * cells // len(tree.share))
 
@@ -101,7 +112,8 @@ class Contrast:
         cells = int(self.cell.max()) + 1
         residual, variance = (np.bincount(self.cell, v, cells) for v in (label - w, w * (1 - w)))
         left = float(np.sum(residual**2 / (variance + 1.0))) - cells
-        return Fit(likelihood, float(np.exp(log_c)), left, cells)
+        doubt = 1 / math.sqrt(max(float(variance.sum()), 1e-300))
+        return Fit(likelihood, float(np.exp(log_c)), left, cells, doubt)
 
     def _explained(self, s: np.ndarray) -> tuple[float, float, np.ndarray]:
         """Return the likelihood of a density, the logarithm of its best constant, and the odds of each point to be a sample."""

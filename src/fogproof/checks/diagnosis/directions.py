@@ -15,6 +15,7 @@ from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting, known_numb
 _MIRROR = np.array([1.0, 1.0, -1.0])
 _ALONG = 0.03  # from a coordinate axis: such a lobe is meant to be about it
 _PER_CELL = 8  # samples in a cell, seen and expected, that tell a density
+_UNIT_LENGTH = 0.3  # relative error of a direction that cells tell
 _LEAN = 0.03  # mean length of directions that have a direction
 
 
@@ -43,6 +44,7 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
         "missing Jacobian", "these samples have a sine of theta too many", lambda s, _: lambda x: s.p(x) * _sine(x)
     )
     yield from _flat(setting)
+    yield from _half_vectors(setting)
     yield from _frames(setting)
     yield Hypothesis(
         "wrong power",
@@ -80,14 +82,19 @@ def _flat(setting: Setting) -> Iterator[Hypothesis]:
     cells, samples over what the claim expects, to the power -1/3, are a linear function of x, of which it is the gradient.
     """
     x = setting.contrast.x
+    told = _cells(setting)
     if len(np.unique(3 * (x.max(axis=1) == np.abs(x).max(axis=1)) + np.abs(x).argmax(axis=1))) > 3:
         yield Hypothesis(
             "normalised cube",
             "these samples are points of a cube, normalised without rejection",
             lambda s, _: lambda x: s.p(x) / np.abs(x).max(axis=1) ** 3,
         )
-    normal = _normal(setting)
-    if normal is None or np.any(x @ normal <= 0):
+    if told is None:
+        return
+    places, ratio = told
+    gradient = np.linalg.lstsq(places, ratio ** (-1 / 3), rcond=None)[0]
+    normal = gradient / max(float(np.linalg.norm(gradient)), 1e-300)
+    if np.any(x @ normal <= 0):
         return
     to = ", ".join(f"{c:.3f}" for c in normal)
     words = f"these samples are even on the area of a plane of normal ({to}) where the pdf means solid angle"
@@ -97,8 +104,30 @@ def _flat(setting: Setting) -> Iterator[Hypothesis]:
     )
 
 
-def _normal(setting: Setting) -> np.ndarray | None:
-    """Return the normal of the plane that the samples would be even on, None if no plane is seen."""
+def _half_vectors(setting: Setting) -> Iterator[Hypothesis]:
+    """Yield that directions reflected at a sampled half vector have the half vector's density.
+
+    With h the half of wo and x, dh/dx = 1 / (4 h . wo), and 2 h . wo = |wo + x| (Walter et al. 2007, eq. 14). Where wo is unknown,
+    in cells, samples over what the claim expects, to the power -2, are proportional to 1 + x . wo.
+    """
+    told = _cells(setting)
+    if told is None:
+        return
+    places, ratio = told
+    level, *gradient = np.linalg.lstsq(np.column_stack([np.ones(len(places)), places]), ratio**-2.0, rcond=None)[0]
+    length = float(np.linalg.norm(gradient))
+    if not (level > 0 and abs(length / level - 1) < _UNIT_LENGTH):
+        return
+    wo = np.asarray(gradient) / length
+    to = ", ".join(f"{c:.3f}" for c in wo)
+    words = f"the Jacobian 1/(4 h . wo) of a reflection at half vectors h is missing, with wo = ({to})"
+    yield Hypothesis(
+        "missing Jacobian", words, lambda s, _: lambda x: s.p(x) / np.sqrt(np.maximum(1 + x @ wo, 1e-9)), fitted=2
+    )
+
+
+def _cells(setting: Setting) -> tuple[np.ndarray, np.ndarray] | None:
+    """Return where cells are, (m, 3), and how many samples they have over what the claim expects, (m,); None of too few cells."""
     contrast = setting.contrast
     n, cells = len(contrast.x), int(contrast.cell.max()) + 1
     weight = setting.p(contrast.points)[n:] / contrast.q[n:]
@@ -111,8 +140,7 @@ def _normal(setting: Setting) -> np.ndarray | None:
         [np.bincount(contrast.cell[n:], weight * contrast.z[:, axis], cells) for axis in range(3)], axis=1
     )
     places = middle[full] / np.bincount(contrast.cell[n:], weight, cells)[full, None]
-    gradient = np.linalg.lstsq(places, (seen[full] / expected[full]) ** (-1 / 3), rcond=None)[0]
-    return np.asarray(gradient / max(float(np.linalg.norm(gradient)), 1e-300))
+    return places, seen[full] / expected[full]
 
 
 def _everywhere(x: np.ndarray) -> np.ndarray:

@@ -10,7 +10,7 @@ import numpy as np
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting, known_number
 from fogproof.domains import HalfLine, Interval
 
-_SCALES = (0.1, 0.3, 0.5, 0.8, 0.95, 1.05, 1.25, 2.0, 3.0, 10.0)
+_SCALES = (0.001, 0.01, 0.1, 0.3, 0.5, 0.8, 0.95, 1.05, 1.25, 2.0, 3.0, 10.0, 100.0, 1000.0)
 _POWERS = (-2.0, -1.5, -1.0, -0.5, -0.2, 0.2, 0.5, 1.0, 1.5, 2.0)
 _FACTORS = known_number(
     {

@@ -34,7 +34,7 @@ def chi_square_along(name: str, marginal: Marginal, counts: np.ndarray, cells: i
     n = counts.sum()
     cells = max(min(cells, int(n / _LEAST), len(counts)), 1)
     while True:
-        at = np.unique(np.arange(cells + 1) * len(counts) // cells)
+        at = _edges(marginal, cells)
         error, mass = marginal.doubt(at[:-1], at[1:]), np.diff(marginal.cdf[at])
         blur = marginal.blur[at[:-1]] + marginal.blur[at[1:]]
         sharp = np.all(error <= BLURRED * np.sqrt(mass / max(n, 1))) and not drowned(n, mass, blur)
@@ -44,6 +44,18 @@ def chi_square_along(name: str, marginal: Marginal, counts: np.ndarray, cells: i
     finding = chi_square(name, np.add.reduceat(counts, at[:-1]), mass, error, blur, alpha)
     observed = np.add.reduceat(counts, at[:-1])
     return finding if finding.outcome != "rejected" else finding.located(between_worst(marginal, at, observed))
+
+
+def _edges(marginal: Marginal, cells: int) -> np.ndarray:
+    """Return the numbers of the edges between up to `cells` groups of about equal probability.
+
+    Cells of a grid are equally probable; those of a table may be anything, and few of them may have nearly all of it.
+    """
+    m = len(marginal.cdf) - 1
+    if not marginal.whole:
+        return np.unique(np.arange(cells + 1) * m // cells)
+    inner = np.searchsorted(marginal.cdf, np.arange(1, cells) / cells)
+    return np.unique(np.concatenate([[0], np.minimum(inner, m), [m]]))
 
 
 def between_worst(marginal: Marginal, at: np.ndarray, observed: np.ndarray) -> str:

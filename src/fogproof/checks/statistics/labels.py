@@ -90,6 +90,7 @@ def whole(name: str, sums: tuple[Sums, ...], alpha: float) -> Finding:
     p, total, variance = max(_total(each) for each in sums)
     if variance < _TELLING:
         message = f"samples and points of a known law share too few places: {variance:.3g} coins in doubt"
+        message += " (points that rounding may move where the pdf is another do not count)"
         return Finding(name, "inconclusive", message, p, alpha)
     spread = 1 / math.sqrt(variance)
     step = (normal_quantile(alpha / 2) + normal_quantile(MISS)) * spread

@@ -87,7 +87,8 @@ def expected_repeats(
         uniforms = _UNIFORM[precision]
     else:
         turn = 2 * np.pi if isinstance(domain, (UnitSphere, UnitHemisphere)) else 1.0
-        cell = np.full(len(points), 16 * roundoff**2 * turn)
+        steps = np.sort(np.maximum(np.abs(points), 1.0), axis=1)[:, -2:]  # far from the origin numbers are coarser
+        cell = 16 * roundoff**2 * turn * np.prod(steps, axis=1)
         uniforms = 2.0**-48 if precision == "float32" else 2.0**-53
     if bits is not None:
         uniforms = max(uniforms, 2.0 ** (-bits * min(2, points.ndim)))

@@ -2,7 +2,8 @@
 
 Sorted, stratified or antithetic output, generators that start again, parameters that are set one call too late, numbers that the
 next sample uses once more: the distribution can be perfect and the samples still not independent. Looked at are lags of 1 to 64,
-within each axis and across, and the two halves of a call.
+within each axis and across, and the two halves of a call. A sample may know how far from the middle another is and not on which
+side (the tent map, x -> 1 - |2 x - 1|, is not correlated with itself): each axis has a second score, the distance from its middle.
 """
 
 from __future__ import annotations
@@ -28,14 +29,16 @@ _LEAST = 100  # pairs
 class Successions:
     """Sums over the scores (n, k) of one stream of samples, less their claimed mean 1/2, as whole numbers.
 
+    The first half of the k scores are those of the axes, the second half twice their distances from the middle.
+
     Whole numbers add up to the same in any order: batches may be counted anywhere.
 
     sums     (k,) of the scores, in units of 2^-15
-    squares  (k, k) of each sample's scores with its own
+    squares  (k,) of their squares
     next     (k, k) of each sample's scores with the next one's
     counts   (2,) how many samples and successions those are
     coarse   (k,) as `sums`, in units of 2^-6, of the samples below
-    powers   (k, k) as `squares`
+    powers   (k,) as `squares`
     lagged   (64, k, k) of each sample's scores with those 1, 2, ... 64 later, among the first samples
     halves   (k, k) of the scores in the first half of a call with those at the same place in its second half
     many     (66,) how many samples, pairs of each lag, and pairs of halves those are
@@ -57,15 +60,16 @@ class Successions:
 
         first  whether it is one of the first batches, in which all lags are looked at
         """
+        d = [*d, *(2 * np.abs(one) - int(_UNIT / 2) for one in d)]
         n, k = len(d[0]), len(d)
         sums = np.array([one.sum() for one in d])
-        squares = np.array([[np.einsum("i,i->", one, other) for other in d] for one in d])
+        squares = np.array([np.einsum("i,i->", one, one) for one in d])
         following = np.array([[np.einsum("i,i->", one[:-1], other[1:]) for other in d] for one in d])
         counts = np.array([n, max(n - 1, 0)])
         whole = n - n % LAGS if first else 0
         c = [(one[:whole] >> _BITS).astype(np.float32) for one in d]
         many = np.concatenate([[whole], np.maximum(whole - np.arange(1, LAGS + 1), 0), [n // 2 if first else 0]])
-        products = [[np.rint(float(one @ other)) for other in c] for one in c]
+        products = [np.rint(float(one @ one)) for one in c]
         half = [[np.rint(float(one @ other)) for other in _halves(d, 1, first)] for one in _halves(d, 0, first)]
         return Successions(
             sums,
@@ -137,13 +141,23 @@ def serial_test(name: str, sums: Successions | None, alpha: float) -> Finding:
     rejected = p <= alpha
     outcome: Outcome = "rejected" if rejected else "not rejected"
     message = f"the largest correlation, {what}, is {best.coefficient:+.3g}"
-    message += ": an antithetic stream" if rejected and best.coefficient < -_ANTITHETIC else ""
+    message += _kind(best, len(sums.sums)) if rejected else ""
     cause = "dependent samples" if abs(best.coefficient) > _STRONG else "correlation"
     pairs = int(sums.many[1]) if sums.many[0] else int(sums.counts[1])
     seen = Resolution(f"correlation at a lag up to {LAGS}", _seen(pairs, 2.0 * LAGS * sums.next.size, alpha), MISS)
     return Finding(
         name, outcome, message, p, alpha, False, best.z, best.coefficient, seen, cause=cause if rejected else ""
     )
+
+
+def _kind(best: _Largest, k: int) -> str:
+    """Return in words what a rejected correlation of two of k scores is, "" if it is a plain one."""
+    folded = [score >= k // 2 for score in divmod(best.index % (k * k), k)]
+    if all(folded):
+        return ": how far from the middle a sample is tells how far another is"
+    if any(folded):
+        return ": how far from the middle a sample is goes with where another is"
+    return ": an antithetic stream" if best.coefficient < -_ANTITHETIC else ""
 
 
 def _seen(pairs: int, rivals: float, alpha: float) -> float:
@@ -168,7 +182,7 @@ class _Largest:
 
 def _moments(sums: np.ndarray, squares: np.ndarray, n: int) -> tuple[np.ndarray, np.ndarray]:
     mean = sums / n
-    return mean, np.maximum(np.diag(squares) / n - mean**2, 0.0)
+    return mean, np.maximum(squares / n - mean**2, 0.0)
 
 
 def _largest(products: np.ndarray, pairs: np.ndarray, mean: np.ndarray, variance: np.ndarray, bound: float) -> _Largest:

@@ -1,0 +1,123 @@
+"""Which of many hypotheses explains the samples best: tried on a few of them, fitted on more, judged on all."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fogproof.checks.diagnosis.contrast import Fit
+from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting
+
+_SCREENED = 1 << 12  # samples on which all hypotheses are tried first, with a few parameters each
+_TRIED = 12  # of them that are fitted closer, on as many samples as show the misfit
+_TELLING, _MOST = 200.0, 1 << 16  # chi-square of the misfit on those samples, and most of them
+_KEPT = 3  # of those that are fitted on all samples
+
+
+@dataclass(frozen=True)
+class Explained:
+    """A fitted hypothesis, its parameter with a standard error, how it fits, and the share of the misfit that it explains."""
+
+    hypothesis: Hypothesis
+    value: float
+    error: float
+    fit: Fit
+    share: float
+
+    @property
+    def words(self) -> str:
+        """The explanation as a sentence."""
+        return f"{self.hypothesis.said(self.value, self.error)} (this explains {self.share:.0%} of the misfit)"
+
+
+def likeliest(setting: Setting, base: Fit, hypotheses: list[Hypothesis]) -> Explained | None:
+    """Return the hypothesis of the greatest likelihood, parameters paid for by Schwarz's criterion; earlier ones win ties."""
+    n = len(setting.contrast.x)
+    small = replace(setting, contrast=setting.contrast.part(_SCREENED))
+    middle = replace(
+        setting, contrast=setting.contrast.part(min(max(int(_TELLING * n / max(base.left, 1.0)), _SCREENED), _MOST))
+    )
+    tried = []
+    for order, hypothesis in enumerate(hypotheses):
+        values = hypothesis.trials or (0.0,)
+        try:
+            scores = [_likelihood(small, hypothesis, value) for value in values]
+        except Exception:  # the user's density may refuse points that no sampler gave
+            continue
+        at = int(np.argmax(scores))
+        score, value, low, high = scores[at], values[at], values[max(at - 1, 0)], values[min(at + 1, len(values) - 1)]
+        if hypothesis.trials:
+            value, score = max((value, score), _fitted(small, hypothesis, low, high, 8), key=lambda one: one[1])
+        tried.append((score, -order, hypothesis, value, 0.5 * (high - low)))
+    tried.sort(key=lambda one: one[:2], reverse=True)
+    closer = []
+    for score, order, hypothesis, value, room in tried[:_TRIED]:
+        if hypothesis.trials:
+            value, score = _fitted(middle, hypothesis, value - room, value + room, 12)
+        else:
+            score = _likelihood(middle, hypothesis, value)
+        closer.append((score - hypothesis.price(len(middle.contrast.x)), order, hypothesis, value, 0.3 * room))
+    closer.sort(key=lambda one: one[:2], reverse=True)
+    found = []
+    for _, order, hypothesis, value, room in closer[:_KEPT]:
+        error = 0.0
+        if hypothesis.trials:
+            error = _error(middle, hypothesis, value, room)
+            value, error = _polished(setting, hypothesis, value, error)
+        fit = setting.contrast.fit(hypothesis.density(setting, value)(setting.contrast.points))
+        share = 1 - max(fit.left - 2 * math.sqrt(2 * fit.freedom), 0.0) / max(base.left, 1.0)
+        score = fit.likelihood - hypothesis.price(n)
+        found.append((score + 1.5 * order / len(hypotheses), order, Explained(hypothesis, value, error, fit, share)))
+    return max(found, key=lambda one: one[:2])[2] if found else None
+
+
+def _likelihood(setting: Setting, hypothesis: Hypothesis, value: float) -> float:
+    points = setting.contrast.points
+    likelihood = setting.contrast.likelihood(hypothesis.density(setting, value)(points))
+    return likelihood if math.isfinite(likelihood) else -math.inf
+
+
+def _fitted(setting: Setting, hypothesis: Hypothesis, low: float, high: float, tries: int) -> tuple[float, float]:
+    """Return the likeliest parameter between two values, and its likelihood."""
+    from scipy.optimize import minimize_scalar
+
+    def loss(value: float) -> float:
+        likelihood = _likelihood(setting, hypothesis, value)
+        return -likelihood if math.isfinite(likelihood) else 1e300
+
+    if hypothesis.trials[0] > 0:
+        low = max(low, 0.5 * hypothesis.trials[0])
+    options = {"xatol": 1e-6 * (high - low), "maxiter": tries}
+    found = minimize_scalar(loss, bounds=(low, high), method="bounded", options=options)
+    return float(found.x), -float(found.fun)
+
+
+def _error(setting: Setting, hypothesis: Hypothesis, value: float, room: float) -> float:
+    """Return the standard error of a fitted parameter, from the curvature of the likelihood."""
+    step, error = 1e-3 * room, room
+    for _ in range(3):
+        below, at, above = (_likelihood(setting, hypothesis, value + d) for d in (-step, 0.0, step))
+        curvature = (2 * at - below - above) / step**2
+        error = 1 / math.sqrt(curvature) if curvature > 0 else room
+        step = min(max(error, 1e-6 * room), 0.3 * room)
+    return error
+
+
+def sharpened(setting: Setting, found: Explained) -> Explained:
+    """Return the same hypothesis with its parameter fitted to more samples."""
+    value, error = _polished(setting, found.hypothesis, found.value, found.error)
+    return replace(found, value=value, error=error)
+
+
+def _polished(setting: Setting, hypothesis: Hypothesis, value: float, error: float) -> tuple[float, float]:
+    """Return a parameter and its standard error on more samples than it was fitted to, by parabolas through the likelihood."""
+    for _ in range(2):
+        below, at, above = (_likelihood(setting, hypothesis, value + step) for step in (-error, 0.0, error))
+        curvature = (2 * at - below - above) / error**2
+        if not (curvature > 0 and math.isfinite(curvature)):
+            break
+        value += float(np.clip((above - below) / (2 * error * curvature), -3 * error, 3 * error))
+        error = 1 / math.sqrt(curvature)
+    return value, error

@@ -1,0 +1,100 @@
+"""What is missing, or has no variance, leaves a judgement open; intervals are no wider than what they are to hold."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+import pytest
+from study_fixtures import SMALL, study_from
+
+from fogproof.contracts import Reference
+from fogproof.study.aggregate import Level
+from fogproof.study.batches import COLUMNS, _largest, draw_batch, moments_of
+from fogproof.study.cells import cells_of
+from fogproof.study.convergence import Z, order_of
+from fogproof.study.judgement import judge
+from fogproof.study.methods import table as methods
+from fogproof.study.methods.method import Method
+from fogproof.study.plan import batches_of
+
+MEAN = 2.0
+COUNTS = (256, 4096)
+
+
+@dataclass(frozen=True)
+class Law(Method):
+    """MEAN plus what `off` draws: `off(rng, shape)`."""
+
+    off: Callable
+    quantity: ClassVar[str] = "transmittance"
+
+    def make(self, scene, count):
+        return self
+
+    def draw(self, rng, n):
+        return MEAN + self.off(rng, n)
+
+
+def normal(rng, shape):
+    return rng.normal(size=shape)
+
+
+def cell(off=normal):
+    one = cells_of(study_from({**SMALL, "samples": COUNTS}))[0]
+    one = replace(one, index=0, method=Law(off), points="random", _made={})
+    one.__dict__["reference"] = Reference(np.asarray(MEAN), np.asarray(1e-15), "", "")
+    return one
+
+
+def level(x):
+    squares = moments_of(np.square(x - MEAN).reshape(1, -1))[0]
+    tail = _largest(np.abs(x - MEAN).ravel())
+    return Level(x.shape[1], moments_of(x), len(x), squares, tail, math.nan, np.full(2, 1e-3), 1e-6, 1, 1e-3)
+
+
+def levels(off):
+    rng = np.random.default_rng()
+    return [level(MEAN + off(rng, (16, count))) for count in COUNTS]
+
+
+def test_what_is_there_is_judged_and_what_is_missing_leaves_it_open():
+    whole = levels(normal)
+    assert judge(cell(), whole, None, 1e-9).outcome == "not rejected"
+    holed = [whole[0], replace(whole[1], rows=whole[1].rows[:-1])]
+    for part in (holed, whole[:1]):
+        judged = judge(cell(), part, None, 1e-9)
+        assert judged.outcome == "inconclusive"
+        assert [f.check for f in judged.findings if f.outcome == "inconclusive"] == ["completeness"]
+
+
+def test_a_mean_without_a_variance_is_not_judged_and_says_why():
+    judged = judge(cell(), levels(lambda rng, shape: rng.standard_t(0.7, size=shape)), None, 1e-9)
+    assert judged.infinite
+    assert judged.outcome == judged.findings[0].outcome == "inconclusive"
+    assert "infinite variance suspected" in judged.findings[0].message
+
+
+def test_deviations_are_from_the_reference(monkeypatch):
+    """An estimator that is off by three standard deviations errs by that, whatever its variance."""
+    monkeypatch.setitem(methods.METHODS, "law", Law)
+    shift = 3.0
+    one = cell(lambda rng, n: shift + rng.normal(size=n))
+    batch = next(batch for batch in batches_of([one]) if batch.size == COUNTS[1])
+    result = draw_batch(one, batch, MEAN)
+    square = dict(zip(COLUMNS, result.moments[-1], strict=True))
+    expected = 1 + shift**2
+    spread = math.sqrt((2 + 4 * shift**2) / square["n"])
+    assert abs(square["mean"] - expected) < 7 * spread
+
+
+@pytest.mark.parametrize("freedom", [4.0, 16.0, 64.0])
+def test_the_interval_of_an_order_is_as_wide_as_the_order_scatters(freedom):
+    rng, counts = np.random.default_rng(), np.array([100, 1000, 10_000, 100_000])
+    noise = np.sqrt(rng.chisquare(freedom, size=(1500, 4)) / freedom)
+    found = [order_of(counts, row / np.sqrt(counts), np.full(4, freedom), np.zeros(4)) for row in noise]
+    whole = [one for one in found if one is not None and one.points == 4]
+    told = np.mean([(one.high - one.low) / 2 for one in whole]) / Z
+    assert len(whole) > 1300
+    assert told == pytest.approx(np.std([one.value for one in whole]), rel=0.15)
