@@ -72,10 +72,10 @@ def write_output(output: str | Path, content: str | bytes, *sources: str | Path)
     sources  files that the content was made from, which it must not replace
     """
     require_other(output, *sources)
-    path = Path(os.path.realpath(output))
+    path = Path(output)
     if path.is_file() or not path.exists() or path.is_dir():
-        return write_file(path, content)
-    try:
+        return write_file(Path(os.path.realpath(path)), content)
+    try:  # by its own name: what /dev/stdout leads to may have none
         path.write_bytes(content if isinstance(content, bytes) else content.encode("utf-8"))
     except OSError as error:
         raise InvalidInputError(f"cannot write {output}: {error.strerror}", str(output)) from None

@@ -1,6 +1,6 @@
 """`python -m fogproof` is the command line."""
 
-from fogproof.cli import main
+from fogproof_command import main
 
 if __name__ == "__main__":
     main()

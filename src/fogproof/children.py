@@ -12,6 +12,7 @@ import atexit
 import contextlib
 import os
 import secrets
+import shutil
 import signal
 import subprocess
 import sys
@@ -20,7 +21,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
 
-_WORDS = "FOGPROOF_CHILD"  # the words of all who started a program, from the outermost to the program's own
+WORDS = "FOGPROOF_CHILD"  # the words of all who started a program, from the outermost to the program's own
 _LOOKS = 8  # looks for processes that were started while others were killed
 _LAST = 5.0  # seconds for the watcher to end after us
 
@@ -43,14 +44,25 @@ class Child:
         _tell(f"ended {self.popen.pid}")
 
 
-def start(words: Sequence[str], environment: Mapping[str, str] | None = None, **pipes: Any) -> Child:
+def start(command: Sequence[str], environment: Mapping[str, str] | None = None, **pipes: Any) -> Child:
     """Start a program; OSError or ValueError where there is none. `pipes` are those of `subprocess.Popen`."""
     word = secrets.token_hex(16)
     told = {**(os.environ if environment is None else environment)}
-    told[_WORDS] = " ".join(filter(None, (told.get(_WORDS, ""), _watched(), word)))
-    child = Child(subprocess.Popen(words, start_new_session=True, env=told, **pipes), word)
+    told[WORDS] = f"{words_of(told)} {word}"
+    child = Child(subprocess.Popen(command, start_new_session=True, env=told, **pipes), word)
     _tell(f"started {child.popen.pid}")
     return child
+
+
+def words_of(environment: Mapping[str, str]) -> str:
+    """Return the words that what is started with an environment has to carry, so that it ends when we do."""
+    return " ".join(filter(None, (environment.get(WORDS, ""), _watched())))
+
+
+def remove_after(folder: str) -> None:
+    """Have a folder removed when this process has ended, however it does."""
+    _watched()
+    _tell(f"remove {os.fsencode(folder).hex()}")
 
 
 def run(words: Sequence[str], seconds: float | None = None) -> subprocess.CompletedProcess[str]:
@@ -143,10 +155,16 @@ def _tell(line: str) -> None:
 def _watch(word: str) -> None:
     """Wait until nobody holds the other end of stdin, and kill what has not ended."""
     groups: set[int] = set()
+    folders: list[str] = []
     for line in sys.stdin:
-        what, _, pid = line.partition(" ")
-        (groups.add if what == "started" else groups.discard)(int(pid))
+        what, _, which = line.strip().partition(" ")
+        if what == "remove":
+            folders.append(os.fsdecode(bytes.fromhex(which)))
+        else:
+            (groups.add if what == "started" else groups.discard)(int(which))
     end_all(groups, [word])
+    for folder in folders:
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 if __name__ == "__main__":

@@ -85,7 +85,7 @@ class Draws(NamedTuple):
     value   (n,) or (n, channels) independent realisations
     cost    (n,) work done, in look-ups of the medium
     order   (n,) scattering order of each realisation
-    stderr  (n,) standard errors that the estimator itself reports
+    stderr  (n,), or (n, channels), standard errors that the estimator itself reports
     """
 
     value: np.ndarray

@@ -14,6 +14,21 @@ class EndedProcessError(Exception):
     """Code that was only to be loaded asked for the end of the process."""
 
 
+_BESIDE: set[str] = set()
+
+
+def import_from(folder: str) -> None:
+    """Let modules beside other people's code be imported, before those that are installed, as Python does where a file is run."""
+    if folder not in sys.path:
+        _BESIDE.add(folder)
+        sys.path.insert(0, folder)
+
+
+def installed_path() -> list[str]:
+    """Return where modules are looked for apart from what lies beside other people's code."""
+    return [folder for folder in sys.path if folder not in _BESIDE]
+
+
 @contextlib.contextmanager
 def loading() -> Iterator[None]:
     """Turn every way in which Python code ends its process into `EndedProcessError`, while other people's code is loaded.

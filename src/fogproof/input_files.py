@@ -12,7 +12,10 @@ from typing import Any
 from fogproof.errors import InvalidInputError
 
 TEXT = 2**26
-"""The largest text that is read [bytes]: a scene, a study, a record."""
+"""The largest text that is read [bytes]: a scene, a study, a record, a file of cases."""
+
+REQUESTS = 2**27
+"""The most that is read of a file of requests [bytes]; from stdin there may be any number, a line at a time."""
 
 
 def open_regular(path: str | Path, what: str, pipes: bool = False) -> BufferedReader:
@@ -36,14 +39,18 @@ def open_regular(path: str | Path, what: str, pipes: bool = False) -> BufferedRe
 
 
 def read_requests(path: str | Path) -> bytes:
-    """Return a file of requests, which may be a pipe and of any length, or raise an `InvalidInputError` that names it."""
+    """Return a file of requests, which may be a pipe, or raise an `InvalidInputError` that names it."""
     with open_regular(path, "the request file", pipes=True) as file:
         try:
-            return file.read()
+            content = file.read(REQUESTS + 1)
         except OSError as error:
             raise InvalidInputError(
                 f"cannot read the request file {path}: {error.strerror or error}", str(path)
             ) from None
+    if len(content) > REQUESTS:
+        what = f"it has more than {REQUESTS} bytes; split it, or let fogproof oracle - read it from stdin"
+        raise InvalidInputError(f"cannot read the request file {path}: {what}", str(path))
+    return content
 
 
 def size_of(file: BufferedReader) -> int:
@@ -65,7 +72,10 @@ def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def read_text(path: str | Path, what: str) -> str:
-    """Return the UTF-8 text of a regular file of no more than `TEXT` bytes, or raise an `InvalidInputError` that names it."""
+    """Return the UTF-8 text of a regular file of no more than `TEXT` bytes, or raise an `InvalidInputError` that names it.
+
+    The mark that some editors begin UTF-8 with is no part of it.
+    """
     with open_regular(path, what) as file:
         if size_of(file) > TEXT:
             size = f"it has {size_of(file)} bytes, more than {TEXT}"

@@ -12,8 +12,8 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
-from fogproof.checks import Verdict, fresh_seed
-from fogproof.checks.arguments import shared_among
+from fogproof.checks import Verdict
+from fogproof.checks.arguments import seed_of, shared_among
 from fogproof.checks.json_values import jsonable
 from fogproof.checks.streams import batch_generator
 from fogproof.errors import InvalidValueError
@@ -38,27 +38,27 @@ class Run:
 
     def __init__(self, alpha: float = ALPHA, seed: int | None = None) -> None:
         self.alpha = number("alpha", alpha, "must lie in (0, 1)", 0, 1, open_ends=True)
-        self.seed = fresh_seed() if seed is None else seed
+        self.seed = seed_of(seed)
         self._started, self._clock = datetime.datetime.now(datetime.UTC), time.perf_counter()
         self._cases: dict[str, dict[str, Any]] = {}
+        self._beside = 0.0  # alphas of verdicts that took none of the run's
 
     def check(self, name: str, check: Callable[..., Verdict], *arguments: Any, **options: Any) -> Verdict:
         """Call a check of fogproof's, such as `check_sampler`, and keep the verdict.
 
         A check that is statistical gets its share of alpha, one that draws random numbers a seed of its own.
-        What it raises is raised, after it has been noted: the page shows it as not judged.
+        What it raises is raised, after it has been noted: the page shows it as not judged, and so it does where somebody
+        interrupts it. A function of one's own that takes no alpha spends one beside the run's; the run's record counts both.
         """
-        if name in self._cases:
-            raise InvalidValueError("name", "must be new in the run", name)
-        place = len(self._cases) + 1
         if "alpha" in options:
             raise InvalidValueError("alpha", "must be given to Run(alpha=...), whose checks share it", options["alpha"])
+        title = _name_of(check)
+        place = self._placed(name, case_record(name, None, title=title, status="error", reason="it did not end"))
         shared = {
             "alpha": self.alpha / (place * (place + 1)),
             "seed": int(batch_generator(self.seed, name, 0, 0).integers(2**62)),
         }
         options = shared_among(check, shared) | options
-        title = _name_of(check)
         clock = time.perf_counter()
         try:
             verdict = check(*arguments, **options)
@@ -72,13 +72,24 @@ class Run:
             raise
         seconds = time.perf_counter() - clock
         self._cases[name] = case_record(name, verdict.to_dict(), title=title, seconds=seconds)
+        if "alpha" not in shared_among(check, shared):
+            self._beside += verdict.alpha
         return verdict
 
     def add(self, name: str, verdict: Verdict) -> None:
-        """Keep a verdict that was reached elsewhere, with an alpha of its own."""
-        if name in self._cases:
+        """Keep a verdict that was reached elsewhere, with an alpha of its own, which the run's record adds to the run's."""
+        if not isinstance(verdict, Verdict):
+            raise InvalidValueError("verdict", "must be a Verdict, as the checks of fogproof return", verdict)
+        self._placed(name, case_record(name, verdict.to_dict(), seconds=verdict.seconds))
+        self._beside += verdict.alpha
+
+    def _placed(self, name: str, case: dict[str, Any]) -> int:
+        """Keep a case under a new name and return its place, from 1; also threads at the same time get different ones."""
+        if not isinstance(name, str):
+            raise InvalidValueError("name", "must be a string", name)
+        if self._cases.setdefault(name, case) is not case:
             raise InvalidValueError("name", "must be new in the run", name)
-        self._cases[name] = case_record(name, verdict.to_dict(), seconds=verdict.seconds)
+        return list(self._cases).index(name) + 1
 
     @property
     def exit_code(self) -> int:
@@ -91,7 +102,7 @@ class Run:
             list(self._cases.values()),
             kind="run",
             seed=self.seed,
-            alpha=self.alpha,
+            alpha=self.alpha + self._beside,
             command=shlex.join(sys.argv),
             started=self._started.isoformat(timespec="seconds"),
             seconds=time.perf_counter() - self._clock,

@@ -3,19 +3,48 @@
 A package of its own, because Python runs `fogproof/__init__.py` before any module of it.
 """
 
+import contextlib
 import os
 import signal
+import sys
+
+from fogproof_command.startup import FAULT, end_of
 
 
 def main() -> None:
     """Run the command line; a signal before it listens, or after, ends the process with one word and the usual code."""
-    for name in ("SIGINT", "SIGTERM", "SIGHUP"):
+    for name in ("SIGINT", "SIGTERM", "SIGHUP", "SIGXCPU"):
         number = getattr(signal, name, None)
         if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, _stop)
-    from fogproof.cli import main as command_line
+    mind_limits()
+    try:
+        from fogproof.cli import main as command_line
+    except Exception as error:
+        what, code = end_of(error)
+        own = "a fault of fogproof's own, please report it with the command: " if code == FAULT else ""
+        with contextlib.suppress(OSError):
+            os.write(2, f"fogproof: {own}{what}\n".encode("utf-8", "backslashreplace"))
+        os._exit(code)
 
     command_line()
+
+
+def mind_limits() -> None:
+    """Keep libraries from what they do not survive where the system limits memory or the size of files."""
+    if _limited("RLIMIT_AS"):  # a thread of OpenBLAS reserves memory, and is waited for for ever where it cannot start
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    if _limited("RLIMIT_FSIZE"):  # Python keeps bytecode that was cut short, and would fail by it for ever after
+        sys.dont_write_bytecode = True
+        os.environ["PYTHONDONTWRITEBYTECODE"] = "1"  # for the processes that we start
+
+
+def _limited(name: str) -> bool:
+    try:
+        import resource
+    except ImportError:  # not on Windows
+        return False
+    return resource.getrlimit(getattr(resource, name))[0] != resource.RLIM_INFINITY
 
 
 def _stop(number: int, _frame: object) -> None:

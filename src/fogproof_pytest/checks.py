@@ -30,7 +30,7 @@ class Checks:
 
     def __getattr__(self, name: str) -> Any:
         thing = getattr(fogproof, name)
-        return self._checking(name, thing) if name.startswith("check_") or name == "compare_estimators" else thing
+        return self._checking(name, thing) if name.startswith(("check_", "compare_")) else thing
 
     def _checking(self, name: str, check: Callable[..., Any]) -> Callable[..., Any]:
         def checked(*arguments: Any, **options: Any) -> Any:
@@ -48,6 +48,10 @@ class Checks:
             if isinstance(found, Verdict):
                 self._verdicts.append({"check": name, **found.to_dict()})
                 self._raise(found)
+                return found
+            if isinstance(getattr(found, "verdict", None), Verdict):  # an image, and what its verdict rests on
+                self._verdicts.append({"check": name, **found.verdict.to_dict()})
+                self._raise(found.verdict)
                 return found
             self._verdicts += [{"check": f"{name} of {one.name}", **one.verdict.to_dict()} for one in found]
             for relation in sorted(found, key=lambda one: one.verdict.outcome != "rejected"):

@@ -94,7 +94,7 @@ def test_whatever_is_raised_has_its_code(monkeypatch, stop, code):
 
 
 def test_the_page_knows_every_code():
-    own = {BAD_INPUT, fogproof.cli.commands._FAULT, UNREAD, *(128 + getattr(signal, name) for name in _ASKING)}
+    own = {BAD_INPUT, fogproof.cli.commands.FAULT, UNREAD, *(128 + getattr(signal, name) for name in _ASKING)}
     assert documented() == own | {0, 1, 3}
 
 

@@ -73,6 +73,7 @@ def test_a_full_disk_leaves_what_was_there(tmp_path, monkeypatch, name):
     path = tmp_path / name
     path.write_bytes(b"before")
     pixels = {"Y": np.random.default_rng(1).random((64, 64))}
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)  # it would be cut short, and kept
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (512, before[1]))
     try:

@@ -209,3 +209,12 @@ def test_no_process_to_be_had_is_the_system_s_fault_not_the_subject_s(monkeypatc
 def test_a_file_may_have_any_name_that_a_system_allows():
     draws = [batch_generator(1, name, 0, 0).random() for name in ("a\udcffb/m", "a\udcfeb/m", "\ud800")]
     assert len(set(draws)) == 3
+
+
+def test_a_name_and_a_file_have_bounds(tmp_path, monkeypatch):
+    with pytest.raises(FogproofError, match="at most 200 characters"):
+        SamplerCase(name="x" * 201, make=int)
+    (tmp_path / "mine.py").write_text("x")
+    monkeypatch.setattr(own, "TEXT", 0)
+    with pytest.raises(InvalidInputError, match="1 bytes; a file of cases has at most 0"):
+        own.own_cases(str(tmp_path / "mine.py"))

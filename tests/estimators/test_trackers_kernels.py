@@ -120,7 +120,7 @@ def test_damaged_code_is_compiled_again(tmp_path: Path) -> None:
 
 
 def test_a_disk_that_is_full_keeps_no_code_and_stops_nothing(tmp_path: Path) -> None:
-    small = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))\n"
+    small = "import resource, sys; resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000)); sys.dont_write_bytecode = True\n"
     value, hits = run(small + TRANSMITTANCE, PACKAGE.parent, tmp_path).split()
     assert 0 < float(value) < 1
     assert hits == "0"

@@ -1,6 +1,8 @@
 """Checks collected in a run: every check that fogproof has may be among them, and they share one false-alarm probability."""
 
 import functools
+import threading
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -56,3 +58,48 @@ def test_what_a_run_cannot_share_or_keep_is_explained():
     with pytest.raises(InvalidValueError, match="Verdict"):
         run.check("no check", lambda: 3)
     assert run.exit_code == 1
+
+
+def test_threads_share_alpha_too():
+    run = fogproof.Run(seed=1)
+    start = threading.Barrier(16)
+
+    def one(i):
+        start.wait()
+        return run.check(f"case {i}", lambda alpha: fogproof.check_estimator(uniform, 0.5, samples=200, alpha=alpha))
+
+    with ThreadPoolExecutor(16) as pool:
+        shares = [verdict.alpha for verdict in pool.map(one, range(16))]
+    assert sorted(shares, reverse=True) == pytest.approx([1e-6 / (k * (k + 1)) for k in range(1, 17)])
+
+
+def test_an_alpha_beside_the_run_is_counted():
+    run = fogproof.Run(alpha=1e-4, seed=1)
+    run.check("its own", lambda: fogproof.check_estimator(uniform, 0.5, samples=2000, alpha=1e-5))
+    run.add("elsewhere", fogproof.check_estimator(uniform, 0.5, samples=2000, alpha=1e-3))
+    assert run.record()["alpha"] == pytest.approx(1e-4 + 1e-5 + 1e-3)
+
+
+def test_an_interrupted_check_is_not_judged():
+    def interrupted(rng, n):
+        raise KeyboardInterrupt
+
+    run = fogproof.Run(seed=1)
+    with pytest.raises(KeyboardInterrupt):
+        run.check("interrupted", fogproof.check_estimator, interrupted, 0.5)
+    assert run.exit_code == 1
+    assert run.record()["cases"][0]["reason"] == "it did not end"
+
+
+@pytest.mark.parametrize(
+    ("wrong", "word"),
+    [
+        (lambda: fogproof.Run(seed=-1), "seed"),
+        (lambda: fogproof.Run().check(3, fogproof.check_estimator, uniform, 0.5), "name must be a string"),
+        (lambda: fogproof.Run().add("x", 3), "verdict must be a Verdict"),
+        (lambda: fogproof.Run().add(fogproof.check_estimator(uniform, 0.5, samples=100), "x"), "must be a"),
+    ],
+)
+def test_wrong_arguments_are_explained(wrong, word):
+    with pytest.raises(InvalidValueError, match=word):
+        wrong()

@@ -58,8 +58,8 @@ intensity = 3
 
 BAD_FILES = [
     ("sigma_a = 0.1", "sigma_a = -0.1", "sigma_a must be finite and >= 0 .* in scene.medium"),
-    ("sigma_a = 0.1", "sigma_a = true", "scene.medium.sigma_a input should be a valid number, got True"),
-    ("sigma_a = 0.1", 'sigma_a = "0.1"', "scene.medium.sigma_a input should be a valid number, got '0.1'"),
+    ("sigma_a = 0.1", "sigma_a = true", "scene.medium.sigma_a must be a number, got True"),
+    ("sigma_a = 0.1", 'sigma_a = "0.1"', "scene.medium.sigma_a must be a number, got '0.1'"),
     ("sigma_a = 0.1", "sigma_x = 0.1", r"scene.medium.sigma_\w is (missing|not a known key)"),
     ("g = 0.3", "g = 1", r"g must lie in the open interval \(-1, 1\), got 1.0 in scene.medium.phase"),
     ("g = 0.3", "k = 1", "scene.medium.phase.[gk] is"),
@@ -68,7 +68,7 @@ BAD_FILES = [
     ("length = inf", "length = -1", "length must be >= 0 .* in scene.ray"),
     ("direction = [0, 0, 1]", "direction = [0, 1, 1]", "direction must have unit length, got 1.414.* in scene.ray"),
     ("direction = [0, 0, 1]", 'direction = "up"', "must be a number or an array of numbers, got 'up'"),
-    ('scattering = "single"', 'scattering = "all"', "scene.scattering input should be .*got 'all'"),
+    ('scattering = "single"', 'scattering = "all"', "scene.scattering must be .*got 'all'"),
     ('scattering = "single"', "colour = 3", "scene.colour is not a known key"),
     ("intensity = 3", "intensity = [1, 2]", "as many channels"),
     ("[light]", "[light", "not valid TOML"),

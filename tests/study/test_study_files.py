@@ -8,6 +8,7 @@ import pytest
 from study_fixtures import BALL, LIT, RAY, SMALL, kinds, study_from, toml
 
 from fogproof.errors import FogproofError
+from fogproof.scene.files import read_scene
 from fogproof.study import read_study
 from fogproof.study.cells import cells_of, prepare
 from fogproof.study.files import differences, study_of
@@ -36,6 +37,12 @@ FAULTS = [
     (["alpha"], 2, "alpha must lie in"),
     (["scenes"], [], "scenes is missing"),
     (["nonsense"], 1, "nonsense is not a known key"),
+    (["replicate"], 4, "replicate is not a known key; did you mean replicates?"),
+    (["samples"], "100", "samples must be a list, got '100'"),
+    (["samples"], [100, 1 << 50], "samples must be at most 1099511627776"),
+    (["replicates"], 10**12, "replicates must be at most"),
+    (["scenes", 0, "medium"], {"sigmaa": 1, "sigma_s": 1}, "sigmaa is not a known key, and scenes.0.medium.sigma_a is missing"),
+    (["scenes", 0, "medium"], {}, "scenes.0.medium.sigma_a is missing, scenes.0.medium.sigma_s too"),
     (["scenes", 0, "quantity"], "radiosity", "scenes.0.quantity"),
     (["scenes", 0, "medium", "sigma_s"], -1, "sigma_s must be finite and >= 0"),
     (["scenes", 0, "light"], None, "scene 'lit', airlight: light must be given"),
@@ -74,6 +81,36 @@ def test_files_that_are_no_studies_are_told(tmp_path, text):
         read_study(file)
     with pytest.raises(FogproofError, match="cannot read the study file"):
         read_study(tmp_path / "none.toml")
+
+
+def test_every_fault_names_the_file(tmp_path):
+    for table in (
+        changed(["scenes", 0, "estimators"], kinds("ratio")),
+        changed(["scenes", 0, "estimators"], kinds("airlight", "airlight")),
+        changed(["scenes", 0, "estimators"], [{"kind": "nowhere:Mine"}]),
+        changed(["scenes", 0, "estimators"], [{"kind": "json:Nothing"}]),
+        changed(["scenes", 0, "light"], None),
+        changed(["samples"], None),
+    ):
+        (tmp_path / "faulty.toml").write_text(toml(table))
+        with pytest.raises(FogproofError, match=r"faulty\.toml: "):
+            prepare(cells_of(read_study(tmp_path / "faulty.toml")))
+
+
+def test_a_study_and_a_scene_are_told_apart(tmp_path):
+    path = tmp_path / "file.toml"
+    path.write_text(toml(SMALL))
+    with pytest.raises(FogproofError, match=r"file\.toml is a study, not a scene: `fogproof study"):
+        read_scene(path)
+    path.write_text("[medium]\nsigma_a = 1\n[ray]\nlength = 1\n")
+    with pytest.raises(FogproofError, match="is a scene, not a study"):
+        read_study(path)
+
+
+def test_the_mark_that_some_editors_write_is_no_fault(tmp_path):
+    path = tmp_path / "s.toml"
+    path.write_text(toml(SMALL), encoding="utf-8-sig")
+    assert read_study(path).fingerprint == study_from(SMALL).fingerprint
 
 
 def test_only_the_content_identifies_a_study(tmp_path):

@@ -8,6 +8,7 @@ from study_fixtures import RAY, toml
 from fogproof.errors import FogproofError
 from fogproof.study import read_study, run_study
 from fogproof.study.cells import cells_of, prepare
+from fogproof.study.files import differences
 
 MINE = """
     import numpy as np
@@ -67,6 +68,9 @@ def test_a_changed_source_is_another_study(tmp_path):
     study_file(tmp_path / "s", [{"kind": "my_module:Analog"}], factor="3.0")  # what it imports counts as well
     after = read_study(path)
     assert after.fingerprint != before.fingerprint
+    assert differences(before.text, after.text) == [
+        "scenes[0].estimators[0]: the contents of my_module:Analog have changed"
+    ]
     with pytest.raises(FogproofError, match="the sources of my_module:Analog have changed"):
         prepare(cells_of(before))
     (cell, _) = cells_of(after)

@@ -161,7 +161,7 @@ def test_a_full_disk_keeps_what_is_there(tmp_path, undisturbed):
 def test_a_file_that_may_not_grow_ends_in_a_sentence(tmp_path):
     (tmp_path / "study.toml").write_text(toml(SMALL))
     out = subprocess.run(
-        [sys.executable, "-c", "from fogproof.cli import main; main()", "study", str(tmp_path / "study.toml"),
+        [sys.executable, "-c", "from fogproof_command import main; main()", "study", str(tmp_path / "study.toml"),
          "-o", str(tmp_path / "run")],
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (60_000, 60_000)),
         capture_output=True, text=True, timeout=1800,
@@ -265,3 +265,14 @@ def test_a_batch_that_is_gone_is_drawn_again(tmp_path, undisturbed):
     drawn(STUDY, tmp_path)
     tampered(tmp_path / FILE, "delete from batches where id = (select max(id) from batches)")
     assert drawn(STUDY, tmp_path)["digest"] == undisturbed
+
+
+@pytest.mark.parametrize(
+    "how", [os.unlink, lambda path: path.rename(path.with_name("elsewhere"))], ids=["gone", "moved"]
+)
+def test_a_store_that_loses_its_name_is_told(tmp_path, how):
+    with opened(tmp_path, STUDY) as store:
+        store.require_there()
+        how(tmp_path / FILE)
+        with pytest.raises(StoreError, match="moved or removed while the study ran"):
+            store.add([])

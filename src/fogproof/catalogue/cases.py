@@ -14,6 +14,9 @@ from fogproof.domains import Domain
 from fogproof.errors import InvalidValueError, SubjectError
 from fogproof.validate import number
 
+LONGEST_NAME = 200
+"""Characters of a case's name: it stands in tables, figures and file names."""
+
 
 @dataclass(frozen=True)
 class Altered:
@@ -169,6 +172,8 @@ def _refuse_nonsense(case: Case) -> None:
     """Refuse what no run could do anything with; what the checks refuse by themselves is theirs."""
     if not (isinstance(case.name, str) and case.name.strip()):
         raise InvalidValueError("name", "must be a text", case.name)
+    if len(case.name) > LONGEST_NAME:
+        raise InvalidValueError("name", f"must have at most {LONGEST_NAME} characters", case.name)
     if not callable(case.make):
         fix = "give a function that builds it, for example make=lambda: MySampler(g=0.5), or the class itself"
         raise InvalidValueError("make", f"of case {case.name!r} must be a function without arguments", case.make, fix)

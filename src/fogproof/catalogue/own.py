@@ -27,7 +27,8 @@ from typing import Any
 
 from fogproof.catalogue.cases import Case, EstimatorCase, SamplerCase
 from fogproof.errors import InvalidInputError, shorten
-from fogproof.foreign import EndedProcessError, loading
+from fogproof.foreign import EndedProcessError, import_from, loading
+from fogproof.input_files import TEXT
 
 GROUP = "fogproof.cases"
 """The entry-point group."""
@@ -74,8 +75,9 @@ def _function_of_file(origin: str) -> Callable[[], Any]:
     path = Path(origin).resolve()
     if not path.is_file():
         raise InvalidInputError(f"there is no file {origin}", origin)
-    if str(path.parent) not in sys.path:  # as if the file were run: it may import what lies beside it
-        sys.path.insert(0, str(path.parent))
+    if path.stat().st_size > TEXT:
+        raise InvalidInputError(f"{origin} has {path.stat().st_size} bytes; a file of cases has at most {TEXT}", origin)
+    import_from(str(path.parent))  # as if the file were run: it may import what lies beside it
     name = f"_cases_{hashlib.blake2b(os.fsencode(path), digest_size=8).hexdigest()}"
     spec = importlib.util.spec_from_file_location(name, path)
     assert spec is not None
@@ -102,7 +104,7 @@ def _function(found: Any, origin: str) -> Callable[[], Any]:
 def _explained(error: BaseException, origin: str) -> str:
     """Return what went wrong in somebody else's file, with the line of it, on one line."""
     if isinstance(error, SyntaxError):
-        return f"line {error.lineno}: {error.msg}"
+        return f"line {error.lineno}: {error.msg}" if error.lineno else error.msg
     places = [f.lineno for f in traceback.extract_tb(error.__traceback__) if Path(f.filename).name == Path(origin).name]
     line = f"line {places[-1]}: " if places else ""
     if isinstance(error, EndedProcessError):

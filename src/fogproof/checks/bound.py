@@ -15,11 +15,11 @@ from typing import Any
 
 import numpy as np
 
-from fogproof.checks.arguments import samples_of, seed_of
+from fogproof.checks.arguments import seed_of, whole
 from fogproof.checks.diagnosis import likely_cause
 from fogproof.checks.statistics.cells import MISS
 from fogproof.checks.streams import batch_generator
-from fogproof.checks.subject import UNIT_ROUNDOFF, Precision, call, numbers
+from fogproof.checks.subject import UNIT_ROUNDOFF, Precision, call, nudged, numbers
 from fogproof.checks.verdict import Finding, Outcome, Resolution, Verdict
 from fogproof.domains import Domain
 from fogproof.errors import InvalidValueError, shorten
@@ -29,7 +29,9 @@ _BEST = 32  # places that are looked at more closely
 _ROUNDS = 40
 _SHRINK = 0.6  # of the neighbourhood, from one round to the next
 _NEAR = 1e-6  # above the bound by less is told as a difference
-_CORNERS = 10  # dimensions up to which all corners are visited
+_CORNERS = 6  # dimensions up to which all corners are visited; of more, as many as these have, chosen at random
+_ROUNDED = {"float64": 1e-6, "float32": 1e-3}  # relative: an excess that is larger is no rounding
+_NOISE = 4.0  # times what a move by one unit in the last place does to f
 
 
 def check_bound(
@@ -60,7 +62,7 @@ def check_bound(
     'rejected'
     """
     started = time.perf_counter()
-    evaluations, seed = samples_of(evaluations, 100), seed_of(seed)
+    evaluations, seed = whole("evaluations", evaluations, 100), seed_of(seed)
     number("attained", attained, "must lie in [0, 1]", 0, 1)
     if not isinstance(domain, Domain):
         raise InvalidValueError("domain", "must be one of fogproof.domains, such as Interval(0, 1)", domain)
@@ -72,8 +74,7 @@ def check_bound(
 
     highest = limit
 
-    def quotient(u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        x = law.place(u)
+    def quotient_at(x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         with np.errstate(all="ignore"):
             value = numbers("f(x)", call("f(x)", f, x), (len(x),))
             top = (
@@ -87,34 +88,48 @@ def check_bound(
         known = ~(np.isnan(value) | np.isnan(top) | np.isposinf(value))
         return np.where(known, ratio, np.inf), value, x
 
-    rng = batch_generator(seed, "bound", 0, 0)
-    best, value, place, used, independent = _search(quotient, len(law.axes), evaluations, rng, 1 + slack)
+    def searched(enough: float) -> tuple[float, float, Any, int, int]:
+        rng = batch_generator(seed, "bound", 0, 0)
+        return _search(lambda u: quotient_at(law.place(u)), len(law.axes), evaluations, rng, enough)
+
+    best, value, place, used, independent = searched(1 + slack)
+    if 1 + slack < best <= 1 + _ROUNDED[precision]:  # so little may be the rounding of f itself
+        moved = np.concatenate(nudged(np.asarray(place)[None], UNIT_ROUNDOFF[precision]))
+        change = np.abs(quotient_at(moved)[0] - best)
+        noise = _NOISE * float(np.max(change, initial=0.0, where=change <= _ROUNDED[precision]))
+        if best <= 1 + noise:
+            slack = noise
+            best, value, place, used, independent = searched(1 + slack)
     over = not best <= 1 + slack
-    at = shorten(place)
-    outcome: Outcome = "rejected" if over else "not rejected"
-    size = f"is {best:.9g} times its bound" if best > 1 + _NEAR else f"is above its bound, by {best - 1:.2g} of that,"
-    above = f"f = {value:.9g} {size} at {at}" if over else f"f <= bound at {used} points"
-    part = "part of the domain where f exceeds its bound"
-    resolution = None if over else Resolution(part, -math.expm1(math.log(MISS) / independent), MISS)
-    cause = "wrong bound" if over else ""
-    findings = [
-        Finding("above everywhere", outcome, above, effect=best - 1, resolution=resolution, cause=cause),
-    ]
+    findings = _found(best, value, shorten(place), used, independent, over)
     if not over:
-        near = best >= attained or highest == 0  # where both are zero, the bound is as tight as can be
-        message = (
-            f"f reaches {best:.4g} of its bound, at {at}" if highest else f"f and its bound are 0 at {used} points"
-        )
-        message += (
-            ""
-            if near
-            else f", less than {attained:g}: the bound is loose, or a peak was missed: more evaluations would tell"
-        )
-        findings.append(Finding("attained somewhere", "not rejected" if near else "inconclusive", message, effect=best))
+        findings.append(_attained(best, shorten(place), used, highest, attained))
     name = getattr(f, "__qualname__", type(f).__name__)
     reproduce = f"check_bound({name}, ..., evaluations={evaluations}, seed={seed})"
     seconds = time.perf_counter() - started
     return Verdict(tuple(findings), 0.0, used, seed, seconds, {}, likely_cause(findings), reproduce)
+
+
+def _found(best: float, value: float, at: str, used: int, independent: int, over: bool) -> list[Finding]:
+    """Return what was found of the largest quotient, `best`, where f has `value`."""
+    size = f"is {best:.9g} times its bound" if best > 1 + _NEAR else f"is above its bound, by {best - 1:.2g} of that,"
+    if not np.isfinite(value):
+        size = "is no number that a bound could hold,"
+    message = f"f = {value:.9g} {size} at {at}" if over else f"f <= bound at {used} points"
+    part = "part of the domain where f exceeds its bound"
+    resolution = None if over else Resolution(part, -math.expm1(math.log(MISS) / independent), MISS)
+    outcome: Outcome = "rejected" if over else "not rejected"
+    cause = "wrong bound" if over else ""
+    return [Finding("above everywhere", outcome, message, effect=best - 1, resolution=resolution, cause=cause)]
+
+
+def _attained(best: float, at: str, used: int, highest: float, attained: float) -> Finding:
+    """Return whether a bound that is nowhere larger than `highest` is reached as nearly as asked for."""
+    near = best >= attained or highest == 0  # where both are zero, the bound is as tight as can be
+    message = f"f reaches {best:.4g} of its bound, at {at}" if highest else f"f and its bound are 0 at {used} points"
+    if not near:
+        message += f", less than {attained:g}: the bound is loose, or a peak was missed: more evaluations would tell"
+    return Finding("attained somewhere", "not rejected" if near else "inconclusive", message, effect=best)
 
 
 def _search(
@@ -130,9 +145,12 @@ def _search(
     """
     independent = evaluations // 4
     spread = np.concatenate([_evenly(evaluations // 2 - independent, k, rng), rng.random((independent, k))])
+    ends = np.array([0.0, 0.5, np.nextafter(1.0, 0.0)])
     if k <= _CORNERS:
-        corners = np.array(list(itertools.product((0.0, 0.5, np.nextafter(1.0, 0.0)), repeat=min(k, 6))))
-        spread = np.concatenate([np.pad(corners, ((0, 0), (0, k - corners.shape[1]))), spread])
+        corners = np.array(list(itertools.product(ends, repeat=k)))
+    else:
+        corners = np.concatenate([np.repeat(ends[:, None], k, axis=1), rng.choice(ends, (3**_CORNERS, k))])
+    spread = np.concatenate([corners, spread])
     ratio, value, x = quotient(spread)
     i = int(np.argmax(ratio))
     best, found, used = (float(ratio[i]), float(value[i]), x[i]), spread, len(spread)

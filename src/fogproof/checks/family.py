@@ -1,9 +1,9 @@
 """`check_family`: is a sampler or an estimator right for every parameter, and which is the simplest it is wrong for?
 
-Hypothesis proposes parameters, simple and extreme ones first. All of them get a few samples; the half that looks most doubtful gets
-twice as many in the next round, and so on (successive halving; Karnin, Koren & Somekh 2013). A rejection ends the search, and
-Hypothesis shrinks: it looks for the simplest parameter that is still rejected. Every check of the search has its own share of one
-false-alarm probability.
+Hypothesis proposes parameters, simple and extreme ones first. All of them get a few samples; the quarter that looks most doubtful
+gets four times as many in the next round, and so on (successive halving; Karnin, Koren & Somekh 2013, who halve: quarters give
+every member as much in half the rounds). A rejection ends the search, and Hypothesis shrinks: it looks for the simplest parameter
+that is still rejected. Every check of the search has its own share of one false-alarm probability.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import time
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from fogproof.checks.family_search import Search, doubt_of, most_doubtful
+from fogproof.checks.family_search import NO_IDEA, Doubt, Search, doubt_of, most_doubtful
 from fogproof.checks.family_verdict import verdict_of
 from fogproof.checks.streams import fresh_seed
 from fogproof.checks.verdict import Verdict
@@ -23,6 +23,10 @@ from fogproof.validate import number
 
 _SHRINKING = 200
 """Parameters that are tried to make a rejected one simpler."""
+
+_QUARTER = 4  # one of so many goes on to the next round
+_ENOUGH = 1000  # samples of a member in a first round that another may follow
+_LEAST = 100  # samples of a member
 
 
 class _FalsifiedError(Exception):
@@ -45,7 +49,7 @@ def check_family(
                 `reference`); a dict `options` of either holds further arguments of its check
     parameters  a Hypothesis strategy, or a sequence of parameters, simple ones first
     members     how many parameters are tried
-    samples     most samples of the search; shrinking may take as many again
+    samples     most samples of the search, 100 for each member at least; shrinking may take as many again
     alpha       false-alarm probability of the whole search
     options     further arguments of `check_sampler` or `check_estimator`, the same for all members
 
@@ -69,11 +73,16 @@ def check_family(
         raise InvalidValueError("make", "must be a function or class: parameter -> sampler or estimator", make)
     members, samples = (int(number(n, v, "must be >= 1", 1)) for n, v in (("members", members), ("samples", samples)))
     started = time.perf_counter()
-    search = Search(make, options, fresh_seed() if seed is None else seed, samples, samples)
-    if isinstance(parameters, Iterable):
-        listed = list(parameters)
-        if not listed:
-            raise InvalidValueError("parameters", "must not be empty", parameters)
+    search = Search(make, options, fresh_seed() if seed is None else seed, samples)
+    listed = list(parameters) if isinstance(parameters, Iterable) else None
+    if listed == []:
+        raise InvalidValueError("parameters", "must not be empty", parameters)
+    tried = members if listed is None else len(listed)
+    if samples < _LEAST * tried:
+        raise InvalidValueError(
+            "samples", f"must be at least {_LEAST * tried}, {_LEAST} for each of {tried} members", samples
+        )
+    if listed is not None:
         _among(search, listed, samples, alpha)
     else:
         _by_hypothesis(search, parameters, members, samples, alpha)
@@ -85,14 +94,15 @@ def _rounds(members: int, samples: int, alpha: float) -> list[tuple[int, int, fl
 
     Half of alpha is for the rounds, half for shrinking.
     """
-    count = max(1, math.ceil(math.log2(members)))
-    kept = [max(1, members >> r) for r in range(count)]
-    return [(k, max(1000, samples // (count * k)), alpha / (2 * count * k)) for k in kept]
+    count = max(1, math.ceil(math.log(members, _QUARTER)))
+    count = min(count, max(1, samples // (_ENOUGH * members)))
+    kept = [max(1, members // _QUARTER**r) for r in range(count)]
+    return [(k, samples // (count * k), alpha / (2 * count * k)) for k in kept]
 
 
 def _among(search: Search, parameters: list[Any], samples: int, alpha: float) -> None:
     """Try a list, simple parameters first: a round with a rejection is the last, and the first one rejected is the simplest."""
-    doubt = dict.fromkeys(range(len(parameters)), 0.0)
+    doubt: dict[int, Doubt] = dict.fromkeys(range(len(parameters)), NO_IDEA)
     for kept, each, share in _rounds(len(parameters), samples, alpha):
         chosen = sorted(most_doubtful(doubt, kept))
         verdicts = {i: search.judge(parameters[i], each, share) for i in chosen}
@@ -108,7 +118,7 @@ def _by_hypothesis(search: Search, strategy: Any, members: int, samples: int, al
         import hypothesis
     except ImportError:
         raise NotInstalledError("Hypothesis", "hypothesis") from None
-    doubt: dict[int, float] | None = None
+    doubt: dict[int, Doubt] | None = None
     for kept, each, share in _rounds(members, samples, alpha):
         chosen = None if doubt is None else set(most_doubtful(doubt, kept))
         doubt = _round(hypothesis, search, strategy, members, chosen, each, share, alpha / (2 * _SHRINKING))
@@ -125,12 +135,12 @@ def _round(
     each: int,
     share: float,
     shrink: float,
-) -> dict[int, float]:
+) -> dict[int, Doubt]:
     """Let Hypothesis propose its parameters, the same in each round, and check those that are chosen; return their doubts.
 
     After a rejection what it proposes are simpler parameters. Each of those is checked, at a share of its own.
     """
-    doubt: dict[int, float] = {}
+    doubt: dict[int, Doubt] = {}
     count = [0, 0]
 
     def trial(parameter: Any) -> None:

@@ -6,6 +6,7 @@ import hashlib
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from inspect import signature
 from typing import Any
 
 from fogproof.checks.estimator import check_estimator
@@ -13,6 +14,15 @@ from fogproof.checks.sampler import check_sampler
 from fogproof.checks.subject import call
 from fogproof.checks.verdict import Finding, Verdict
 from fogproof.errors import FogproofError, InvalidValueError
+
+Doubt = tuple[bool, float]
+"""What members are sorted by, the doubtful ones first."""
+
+NO_IDEA: Doubt = (False, 0.0)
+_HARDLY = 100.0  # times its share of alpha: a p-value below that is nothing to pass by
+
+_GIVEN = {"draw", "reference", "sample", "pdf", "domain", "dimensions", "atoms", "eval"}  # by a member
+_OPTIONS = {*signature(check_estimator).parameters, *signature(check_sampler).parameters} - _GIVEN
 
 
 @dataclass
@@ -23,25 +33,31 @@ class Search:
     options: Mapping[str, Any]
     seed: int
     budget: int
-    left: int
+    drawn: int = 0
     tried: dict[str, tuple[Any, Verdict]] = field(default_factory=dict)
     simplest: tuple[Any, Verdict] | None = None
 
     def judge(self, parameter: Any, samples: int, alpha: float) -> Verdict:
         """Check the member with one parameter; the same seed for the same parameter, so that a search can be repeated."""
-        self.left -= samples
         words = f"{self.seed}/{parameter!r}/{samples}".encode()
         seed = int.from_bytes(hashlib.blake2b(words, digest_size=7).digest(), "little")
         try:
             verdict = _check(call("make(parameter)", self.make, parameter), samples, alpha, seed, self.options)
         except FogproofError as error:
-            if isinstance(error, InvalidValueError) and error.argument in self.options:
-                raise  # said of all members alike: nobody's fault but the caller's
-            verdict = _failed(error, alpha, samples, seed)
+            if isinstance(error, InvalidValueError) and self._of_the_caller(error):
+                raise
+            verdict = _failed(error, alpha, seed)
+        self.drawn += verdict.samples
         self.tried[repr(parameter)] = (parameter, verdict)
         if verdict.outcome == "rejected":
             self.simplest = (parameter, verdict)
         return verdict
+
+    def _of_the_caller(self, error: InvalidValueError) -> bool:
+        """Return whether all members alike are refused: by an option, by one that an option lacks, or for what `make` makes."""
+        if error.argument == "make":
+            return not self.tried
+        return bool(self.options) and error.argument in _OPTIONS
 
 
 def _check(member: Any, samples: int, alpha: float, seed: int, options: Mapping[str, Any]) -> Verdict:
@@ -67,19 +83,33 @@ def _check(member: Any, samples: int, alpha: float, seed: int, options: Mapping[
     )
 
 
-def _failed(error: FogproofError, alpha: float, samples: int, seed: int) -> Verdict:
-    """A member that raises or breaks its contract is wrong at this parameter."""
+def _failed(error: FogproofError, alpha: float, seed: int) -> Verdict:
+    """A member that raises or breaks its contract is wrong at this parameter, and nobody knows how much it has drawn."""
     cause = getattr(error, "cause", "contract")
     finding = Finding("contract", "rejected", str(error), alpha=0.0, cause=cause)
-    return Verdict((finding,), alpha, samples, seed, cause=cause)
+    return Verdict((finding,), alpha, 0, seed, cause=cause)
 
 
-def doubt_of(verdict: Verdict) -> float:
-    """Return how well a member does: the smallest of p / share over its findings; small is doubtful."""
-    ratios = [f.p_value / f.alpha for f in verdict.findings if f.p_value is not None and f.alpha]
-    return min(ratios, default=math.inf) if verdict.outcome != "inconclusive" else 0.0
+def doubt_of(verdict: Verdict) -> Doubt:
+    """Return how well a member does: what cannot be told, or hardly passes, comes before all that passes; then the smaller p.
+
+    p is the smallest p / share over the findings. One that is no test yet, for want of samples, has the p of its statistic in units
+    of its standard error, or 0 without any: it still says who looks worse.
+    """
+    undecided = verdict.outcome == "inconclusive"
+    ratio = min((_ratio(finding) for finding in verdict.findings if finding.alpha), default=math.inf)
+    return (not undecided and ratio > _HARDLY, ratio)
 
 
-def most_doubtful(doubt: dict[int, float], kept: int) -> list[int]:
-    """Return the numbers of the `kept` members whose doubt is smallest."""
+def _ratio(finding: Finding) -> float:
+    assert finding.alpha
+    if finding.p_value is not None:
+        return finding.p_value / finding.alpha
+    if finding.outcome != "inconclusive":
+        return math.inf
+    return 0.0 if finding.statistic is None else math.erfc(abs(finding.statistic) / math.sqrt(2)) / finding.alpha
+
+
+def most_doubtful(doubt: dict[int, Doubt], kept: int) -> list[int]:
+    """Return the numbers of the `kept` members whose doubt comes first."""
     return [i for _, i in sorted((value, i) for i, value in doubt.items())][:kept]

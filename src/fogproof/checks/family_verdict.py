@@ -7,14 +7,13 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from fogproof.checks.family_search import Search
+from fogproof.checks.family_search import Search, doubt_of
 from fogproof.checks.verdict import Finding, Outcome, Verdict
 
 
 def verdict_of(search: Search, alpha: float, seconds: float) -> Verdict:
     """Return the verdict of a whole search: the simplest member that is rejected, or what all that were tried say."""
     tried = list(search.tried.values())
-    drawn = sum(verdict.samples for _, verdict in tried)
     if search.simplest is not None:
         parameter, found = search.simplest
         wrong = sum(verdict.outcome == "rejected" for _, verdict in tried)
@@ -25,7 +24,7 @@ def verdict_of(search: Search, alpha: float, seconds: float) -> Verdict:
             found,
             findings=(family, *found.findings),
             alpha=alpha,
-            samples=drawn,
+            samples=search.drawn,
             seed=search.seed,
             seconds=seconds,
             settings={**found.settings, "parameter": repr(parameter)},
@@ -35,7 +34,8 @@ def verdict_of(search: Search, alpha: float, seconds: float) -> Verdict:
     most = max(verdict.samples for _, verdict in tried)
     message = f"{len(tried)} parameters, {least} samples each, {most} where doubt was greatest"
     if unsure:
-        message += f"; no decision at {len(unsure)} of them. {_why(*unsure[0], search.budget)}"
+        worst_off = min(unsure, key=lambda each: doubt_of(each[1]))
+        message += f"; no decision at {len(unsure)} of them. {_why(*worst_off, search.budget)}"
     worst = max(
         (verdict.resolution for _, verdict in tried if verdict.resolution is not None),
         key=lambda r: r.value,
@@ -43,7 +43,7 @@ def verdict_of(search: Search, alpha: float, seconds: float) -> Verdict:
     )
     outcome: Outcome = "inconclusive" if unsure else "not rejected"
     finding = Finding("family", outcome, message, alpha=alpha, resolution=worst)
-    return Verdict((finding,), alpha, drawn, search.seed, seconds)
+    return Verdict((finding,), alpha, search.drawn, search.seed, seconds)
 
 
 def _why(parameter: Any, verdict: Verdict, budget: int) -> str:

@@ -7,11 +7,13 @@ import errno
 import multiprocessing
 import multiprocessing.connection
 import os
+import signal
 import sys
 import threading
 from collections.abc import Callable
 from typing import Any, TypeVar
 
+from fogproof import servers
 from fogproof.errors import FogproofError, SubjectError, UnsupportedError
 from fogproof.validate import time_limit
 
@@ -38,10 +40,11 @@ def isolated(check: Callable[[], Answer], seconds: float | None = None) -> Answe
     """
     if seconds is not None:
         time_limit("seconds", seconds)
-    name = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
-    context = multiprocessing.get_context(name)
-    if name == "forkserver":  # what takes seconds to load is loaded once
-        context.set_forkserver_preload(["fogproof.verify", "fogproof.checks.suite", "scipy.stats", "scipy.optimize"])
+    slow = ["fogproof.verify", "fogproof.checks.suite", "scipy.stats", "scipy.optimize"]
+    try:
+        context = servers.context(slow)
+    except OSError as error:
+        raise _no_process(error) from None
     return _answer_of(context, seconds, check)
 
 
@@ -62,8 +65,7 @@ def _answer_of(context: Any, seconds: float | None, check: Callable[[], Answer])
         child.start()
     except (EOFError, OSError) as error:  # EOFError: the server of processes could start none, and ended
         ours.close()
-        fix = "end some, or raise the system's limit (ulimit -u)"
-        raise OSError(getattr(error, "errno", None) or errno.EAGAIN, f"no process could be started; {fix}") from None
+        raise _no_process(error) from None
     finally:
         theirs.close()
     try:
@@ -75,6 +77,9 @@ def _answer_of(context: Any, seconds: float | None, check: Callable[[], Answer])
             child.join()
             raise SubjectError(f"the subject ended the process, exit code {child.exitcode}", "sample") from None
     finally:
+        if child.pid is not None:
+            with contextlib.suppress(OSError, AttributeError):  # with all that it started and left in its session
+                os.killpg(child.pid, signal.SIGKILL)
         child.kill()
         child.join()
         ours.close()
@@ -84,7 +89,16 @@ def _answer_of(context: Any, seconds: float | None, check: Callable[[], Answer])
     return returned
 
 
+def _no_process(error: BaseException) -> OSError:
+    if getattr(error, "errno", None) in (errno.EMFILE, errno.ENFILE):
+        return OSError(error.errno, "too many files are open; raise the system's limit (ulimit -n)")  # type: ignore[attr-defined]
+    fix = "end some, or raise the system's limit (ulimit -u)"
+    return OSError(getattr(error, "errno", None) or errno.EAGAIN, f"no process could be started; {fix}")
+
+
 def _answer(check: Callable[[], object], pipe: multiprocessing.connection.Connection) -> None:
+    with contextlib.suppress(OSError, AttributeError):  # a signal to our parent's group is not for the subject
+        os.setsid()
     parent = multiprocessing.parent_process()
     assert parent is not None
     with contextlib.suppress(RuntimeError):  # where no more threads may be started nothing watches
@@ -93,8 +107,8 @@ def _answer(check: Callable[[], object], pipe: multiprocessing.connection.Connec
         pipe.send((True, check()))
     except FogproofError as error:
         pipe.send((False, (str(error), error.path)))
-    except Exception as error:  # the parent must hear of it, whatever it is
-        pipe.send((False, (f"{type(error).__name__}: {error}", "sample")))
+    except BaseException as error:  # the parent must hear of it, whatever it is
+        pipe.send((False, (f"{type(error).__name__}: {error}".removesuffix(": "), "sample")))
 
 
 def _end_with(sentinel: int) -> None:

@@ -12,11 +12,13 @@ from fogproof.checks.observed import Observed
 from fogproof.checks.quantities import OF_A_DIFFERENCE, Declared, column, quantities_of
 from fogproof.checks.statistics.binomial import binomial_p
 from fogproof.checks.statistics.moments import Moments
-from fogproof.checks.verdict import Finding, Outcome
+from fogproof.checks.statistics.power import sign_reach
+from fogproof.checks.verdict import Finding, Outcome, Resolution
 from fogproof.contracts import Draws, Reference
 
 NAMES = ("first", "second")
 _DIFFERENCE = 0.9  # share of alpha for the differences; the rest is for each estimator by itself
+_EQUAL = 1e-12  # relative: rounding in double precision
 _ERRORS = 0.2  # of it for the standard errors of each, if any are reported
 
 
@@ -126,7 +128,19 @@ class Pairs:
             p = binomial_p(more, more + fewer, 0.5, 0.5) if more + fewer else 1.0
             outcome: Outcome = "rejected" if p <= alpha else "not rejected"
             message = f"{start} (sign test of the {more + fewer} pairs in which they differ)"
-            finding = replace(finding, outcome=outcome, message=message, p_value=p, alpha=alpha, exact=False)
+            reach = sign_reach(self.seen.n, more + fewer, alpha) * (max(a.high, b.high) - min(a.low, b.low))
+            finding = replace(
+                finding,
+                outcome=outcome,
+                message=message,
+                p_value=p,
+                alpha=alpha,
+                exact=False,
+                resolution=Resolution("bias of difference", reach),
+            )
+        elif a.low == a.high and b.low == b.high and abs(effect) <= self._rounding * max(abs(a.mean), abs(b.mean)):
+            message = f"all {self.seen.n} realisations of both are {a.mean:.7g}"
+            finding = replace(finding, outcome="not rejected", message=message, p_value=None, resolution=None)
         elif (a.low == a.high) != (b.low == b.high) and not self.declared.known(self._variance).two_sided:
             message = f"{start}; one of them never varies, and a value too rare to be seen may hold the difference"
             message += ": ask for more samples, or declare bounds=(low, high) or the exact variance=(first, second)"
@@ -137,6 +151,11 @@ class Pairs:
         rejected = finding.outcome == "rejected"
         larger = ("the first is the larger",) if effect > 0 else ("the second is the larger",)
         return replace(finding, effect=effect, region=larger if rejected else (), cause="bias" if rejected else "")
+
+    @property
+    def _rounding(self) -> float:
+        """By how much two equal constants may differ, relative to them, that were computed in two ways."""
+        return max(_EQUAL, 4 * self.declared.roundoff)
 
     @property
     def _variance(self) -> float | None:
@@ -159,4 +178,5 @@ def _hits_of_the_same(a: Moments, b: Moments) -> bool:
 
 def _not_finite(name: str, side: Observed) -> Finding:
     message = f"{side.bad} of {side.n} realisations of the {name} are not finite"
-    return Finding(f"finite values of the {name}", "rejected", message, effect=side.bad / side.n, cause="bias")
+    cause = "not a number"
+    return Finding(f"finite values of the {name}", "rejected", message, effect=side.bad / side.n, cause=cause)

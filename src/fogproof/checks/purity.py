@@ -125,9 +125,10 @@ def _differs(a: Draw, b: Draw, precision: str) -> tuple[str, float]:
         if one.shape != two.shape:
             return name, 1.0
         first, second = one.reshape(len(one), -1).astype(float), two.reshape(len(two), -1).astype(float)
-        same = (first == second) | (np.isnan(first) & np.isnan(second))
+        same = first == second
         if same.all():  # the usual answer, for which nobody needs to know how much would be allowed
             continue
+        same |= np.isnan(first) & np.isnan(second)
         with np.errstate(invalid="ignore"):
             same |= np.abs(first - second) <= _allowed(first, precision)
         share = float(np.mean(~same.all(axis=1)))

@@ -128,7 +128,7 @@ class Verdict:
     alpha: float
     samples: int
     seed: int
-    seconds: float = 0.0
+    seconds: float = field(default=0.0, compare=False)
     settings: dict[str, Any] = field(default_factory=dict, hash=False)
     cause: str = ""
     reproduce: str = ""

@@ -17,9 +17,10 @@ from typing import Any, TextIO
 import click
 
 from fogproof.cli.signals import code_of, stoppable
-from fogproof.cli.terminal import BAD_INPUT, UNREAD, code_of_stdout, say, silence
+from fogproof.cli.terminal import BAD_INPUT, UNREAD, code_of_stdout, say, silence, wait_for_streams
 from fogproof.errors import FogproofError, stop_behind
 from fogproof.text import one_line
+from fogproof_command.startup import FAULT, end_of
 
 _COMMANDS = {
     "verify": "Check every sampler and estimator against its reference.",
@@ -82,6 +83,7 @@ def main(arguments: list[str] | None = None) -> Any:
     """Run the command line. Every end is a sentence and a code; 1 means that something was rejected, and nothing else."""
     if sys.stdout is None:
         sys.stdout = _unread()
+    wait_for_streams()
     warnings.showwarning = _warn
     with stoppable() as listening:
         try:
@@ -92,7 +94,7 @@ def main(arguments: list[str] | None = None) -> Any:
 
 
 def _run(arguments: list[str] | None) -> int:
-    code = _FAULT
+    code = FAULT
     try:
         code = cli.main(arguments, standalone_mode=False)
         if sys.stdout is not None:
@@ -113,7 +115,7 @@ def _run(arguments: list[str] | None) -> int:
         silence(sys.stdout)
         code = UNREAD
     except OSError as error:
-        code = _say(f"{error.strerror or error}{f': {error.filename}' if error.filename else ''}", BAD_INPUT)
+        code = _say(_of_the_system(error), BAD_INPUT)
         if error.errno in (errno.ENOSPC, errno.EIO) and error.filename is None:
             silence(sys.stdout)
     except RuntimeError as error:
@@ -127,15 +129,21 @@ def _run(arguments: list[str] | None) -> int:
     return code
 
 
+def _of_the_system(error: OSError) -> str:
+    if error.errno in (errno.EMFILE, errno.ENFILE):
+        return "too many files are open; raise the system's limit (ulimit -n)"
+    return f"{error.strerror or error}{f': {error.filename}' if error.filename else ''}"
+
+
 def _fault(error: Exception) -> int:
+    explained, known = end_of(error)
+    if known != FAULT:
+        return _say(one_line(explained), known)
     where = traceback.extract_tb(error.__traceback__)[-1]
     what = f"{type(error).__name__}: {error} ({Path(where.filename).name}, line {where.lineno})"
     if os.environ.get("FOGPROOF_DEBUG"):
         traceback.print_exc()
-    return _say(f"a fault of fogproof's own, please report it with the command: {what}", _FAULT)
-
-
-_FAULT = 70
+    return _say(f"a fault of fogproof's own, please report it with the command: {what}", FAULT)
 
 
 def _say(message: object, code: int, who: str = "fogproof: ") -> int:

@@ -18,7 +18,9 @@ from typing import Any
 
 from fogproof.errors import stop_behind
 
-_ASKING = ("SIGINT", "SIGTERM", "SIGHUP")
+_ASKING = ("SIGINT", "SIGTERM", "SIGHUP", "SIGXCPU")
+_REPEATED = getattr(signal, "SIGXCPU", 0)
+"""The signal that the system sends again every second, and nobody means more by it."""
 PATIENCE = 1.0
 """Seconds after the first signal during which others are taken for the same; a later one ends the process at once."""
 
@@ -50,7 +52,7 @@ class Listening:
             self.number, self.at = number, time.monotonic()
             if not self.held:
                 raise Stopped(number)
-        elif time.monotonic() - self.at > PATIENCE:
+        elif number != _REPEATED and time.monotonic() - self.at > PATIENCE:
             signal.signal(number, signal.SIG_DFL)
             os.kill(os.getpid(), number)
 

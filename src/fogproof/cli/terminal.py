@@ -55,6 +55,13 @@ def silence(stream: TextIO) -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
+def wait_for_streams() -> None:
+    """Let reading and writing wait where a parent left its pipes non-blocking: Python would lose what is under way."""
+    for number in range(3):
+        with contextlib.suppress(OSError, AttributeError):  # one that is closed
+            os.set_blocking(number, True)
+
+
 def requests_on_stdin() -> BinaryIO:
     """Return stdin's bytes; an `InvalidInputError` if it is closed."""
     if sys.stdin is None:

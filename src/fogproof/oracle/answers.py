@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -121,8 +122,8 @@ def evaluate(quantity: Quantity, arguments: dict[str, Any], limits: Limits) -> t
     if quantity.of:
         asked, given = arguments["of"]
         require_size(asked, given, limits.values)
-    with within(limits.seconds), np.errstate(all="ignore"):
-        reference = quantity.function(**arguments)
+    with np.errstate(all="ignore"):
+        reference = within(limits.seconds, partial(quantity.function, **arguments))
     value, error = np.broadcast_arrays(np.asarray(reference.value), np.asarray(reference.error))
     return np.asarray(value + 0.0), np.asarray(error + 0.0), reference
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import contextlib
 import math
 import signal
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from types import FrameType
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -17,6 +16,8 @@ from fogproof.errors import InvalidValueError, TimeLimitError, TooLargeError
 from fogproof.quantities import Quantity
 from fogproof.scene.arrays import Count
 from fogproof.validate import LONGEST
+
+Answer = TypeVar("Answer")
 
 DEEPEST = 64
 """Levels of lists and tables in a request: NumPy has as many axes."""
@@ -91,15 +92,19 @@ class _Alarm(BaseException):
     """Raised wherever the program is when time is up; no `except Exception` on the way may swallow it."""
 
 
-@contextlib.contextmanager
-def within(seconds: float) -> Iterator[None]:
-    """Raise `TimeLimitError` if the body takes longer; without effect where the system has no alarm."""
+def within(seconds: float, work: Callable[[], Answer]) -> Answer:
+    """Return work(), or raise `TimeLimitError` if it takes longer; without effect where the system has no alarm.
+
+    The alarm may ring at any moment until the first line of `finally`, which no handler can come before: an assignment is no call.
+    """
     possible = hasattr(signal, "setitimer") and threading.current_thread() is threading.main_thread()
     if not possible or seconds > LONGEST:
-        yield
-        return
+        return work()
+    awaited = True
 
     def ring(_signal: int, frame: FrameType | None) -> None:
+        if not awaited:
+            return
         if _importing(frame):  # a module that is left half-imported would spoil every answer after this one
             signal.setitimer(signal.ITIMER_REAL, AGAIN)
             return
@@ -107,10 +112,11 @@ def within(seconds: float) -> Iterator[None]:
 
     before = signal.signal(signal.SIGALRM, ring)
     try:
-        signal.setitimer(signal.ITIMER_REAL, seconds)  # it may ring at once
-        yield
+        signal.setitimer(signal.ITIMER_REAL, seconds)
+        return work()
     except _Alarm:
         raise TimeLimitError(f"no answer within {seconds:g} s; ask for less, or allow more time") from None
     finally:
+        awaited = False
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, before)

@@ -48,9 +48,12 @@ def _table(path: Path) -> dict[str, Any]:
             raise InvalidInputError(f"{path}: must be a table of keys, got {shorten(table)}", str(path))
         return table
     try:
-        return tomllib.loads(text)
+        table = tomllib.loads(text)
     except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise InvalidInputError(f"{path} is not valid TOML: {error}", str(path)) from None
+    if isinstance(table.get("scenes"), list):
+        raise InvalidInputError(f"{path} is a study, not a scene: `fogproof study {path} -o DIR` runs it", "scenes")
+    return table
 
 
 def read_fields(types: dict[str, Any], data: Any, origin: str) -> dict[str, Any]:
@@ -97,6 +100,14 @@ def _with_infinities(value: Any) -> Any:
 
 
 _UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
+_RULES = {
+    "tuple_type": "must be a list",
+    "list_type": "must be a list",
+    "int_type": "must be a whole number",
+    "float_type": "must be a number",
+    "string_type": "must be a text",
+    "bool_type": "must be true or false",
+}
 
 
 def _complaint(error: Any, data: Any, origin: str, known: tuple[str, ...]) -> InvalidInputError | InvalidValueError:
@@ -109,6 +120,9 @@ def _complaint(error: Any, data: Any, origin: str, known: tuple[str, ...]) -> In
     if fault["type"] in _UNKNOWN and absent:  # what is missing beside a key that nobody knows is what was meant
         others = [other for other in others if other not in absent]
         more = f", and {', '.join(absent)} {'is' if len(absent) == 1 else 'are'} missing"
+    elif "missing" in fault["type"] and absent:
+        others = [other for other in others if other not in absent]
+        more = f", {', '.join(absent)} too"
     else:
         meant = difflib.get_close_matches(place, known, 1) if fault["type"] in _UNKNOWN else []
         more = f"; did you mean {meant[0]}?" if meant else ""
@@ -126,7 +140,8 @@ def _complaint(error: Any, data: Any, origin: str, known: tuple[str, ...]) -> In
     if fault["type"] == "union_tag_invalid":
         reason = f"has kind {shorten(fault['ctx']['tag'])}; known are {fault['ctx']['expected_tags']}"
     else:
-        reason = reasons.get(fault["type"], f"{_lower(fault['msg'])}, got {shorten(fault['input'])}")
+        rule = _RULES.get(fault["type"], _lower(fault["msg"]).replace("input should be", "must be", 1))
+        reason = reasons.get(fault["type"], f"{rule}, got {shorten(fault['input'])}")
     return InvalidInputError(f"{origin}: {place} {reason}{more}", place)
 
 

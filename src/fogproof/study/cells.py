@@ -107,16 +107,21 @@ def cells_of(study: Study) -> list[Cell]:
             where = f"scenes.{number}.estimators.{place}"
             if method.quantity not in (scene.quantity, None):
                 what = f"{name_of(method)} estimates the {method.quantity}"
-                raise InvalidInputError(f"{where}: {what}, scene {scene.name!r} is about the {scene.quantity}", where)
+                told = f"{study.origin}: {where}: {what}, scene {scene.name!r} is about the {scene.quantity}"
+                raise InvalidInputError(told, where)
             kinds: list[Points] = ["random"]
-            if study.sobol and method.dimensions is not None:
-                kinds.append("sobol")
+            try:
+                if study.sobol and method.dimensions is not None:
+                    kinds.append("sobol")
+            except FogproofError as error:
+                raise InvalidInputError(f"{study.origin}: {where}: {error}", error.path) from None
             for points in kinds:
                 cells.append(Cell(len(cells), scene, method, points, study))
         names = [cell.name for cell in cells if cell.scene is scene]
         for name in names:
             if names.count(name) > 1:
-                raise InvalidInputError(f"scenes.{number}.estimators: {name!r} is there twice", f"scenes.{number}")
+                told = f"{study.origin}: scenes.{number}.estimators: {name!r} is there twice"
+                raise InvalidInputError(told, f"scenes.{number}")
     return cells
 
 
@@ -127,7 +132,7 @@ def prepare(cells: list[Cell]) -> None:
             _ = cell.reference
             cell.estimator(cell.counts[0])
         except FogproofError as error:
-            place = f"scene {cell.scene.name!r}, {cell.name}"
+            place = f"{cell.study.origin}: scene {cell.scene.name!r}, {cell.name}"
             raise InvalidInputError(f"{place}: {error}", error.path) from None
 
 

@@ -62,6 +62,7 @@ def run_study(
                     stopped = stop
         run = Circumstances(command, started, time.perf_counter() - clock, executor, slots, stopped is not None)
         record = make_record(study, cells, batches, store, run)
+        store.require_there()
     from fogproof.reports.files import write_file
 
     if before is not None:

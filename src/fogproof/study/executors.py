@@ -17,6 +17,7 @@ from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from typing import Any
 
+from fogproof import servers
 from fogproof.errors import InvalidValueError, NotInstalledError, SubjectError
 
 PATIENCE = 10.0
@@ -65,7 +66,9 @@ def open_workers(where: str, workers: int | None) -> Iterator[Workers]:
     if where == "threads":
         made = Workers(lambda: ThreadPoolExecutor(n), n)
     elif where == "processes":
-        made = Workers(lambda: ProcessPoolExecutor(n, _context(), initializer=_as_worker), n)
+        made = Workers(
+            lambda: ProcessPoolExecutor(n, servers.context(["fogproof.study.batches"]), initializer=_as_worker), n
+        )
     else:
         raise InvalidValueError("--executor", "must be threads, processes or dask://host:port", where)
     try:
@@ -74,17 +77,8 @@ def open_workers(where: str, workers: int | None) -> Iterator[Workers]:
         made.executor.shutdown(wait=True, cancel_futures=True)
 
 
-def _context() -> Any:
-    """Return how processes begin: never as a fork of this one, which would copy locks that other threads hold."""
-    if "forkserver" not in multiprocessing.get_all_start_methods():
-        return multiprocessing.get_context("spawn")
-    context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(["fogproof.study.batches"])
-    return context
-
-
 def _as_worker() -> None:
-    """Leave Ctrl-C to the process that coordinates, which wants the batches that are under way; end when that process ends.
+    """Leave signals to the process that coordinates, which wants the batches that are under way; end when that process ends.
 
     A worker that outlives it would wait for work for ever, and keep open what its parent's output is read from.
     """

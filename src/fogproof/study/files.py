@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from fogproof.errors import InvalidInputError, InvalidValueError, shorten
+from fogproof.errors import FogproofError, InvalidInputError, InvalidValueError, shorten
 from fogproof.input_files import read_text
 from fogproof.scene.files import read_fields
 from fogproof.study.media import sha256_of
@@ -25,6 +25,7 @@ from fogproof.study.question import Question
 from fogproof.validate import number
 
 LARGEST_COUNT = 1 << 40
+LARGEST_REPLICATES = 1 << 24
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -55,6 +56,7 @@ class Study:
     alpha       false-alarm probability of the whole study
     text        the normalised JSON of the file
     folder      where the study file lies: relative paths start there
+    origin      what the file is called in messages
     """
 
     samples: tuple[int, ...]
@@ -67,12 +69,16 @@ class Study:
     alpha: float = 1e-6
     text: str = ""
     folder: str = ""
+    origin: str = "study"
 
     def __post_init__(self) -> None:
         counts = np.array(self.samples, dtype=object)
-        good = len(counts) > 0 and all(1 <= n <= LARGEST_COUNT for n in counts) and all(np.diff(counts) > 0)
-        if not good:
-            raise InvalidValueError("samples", "must be rising whole numbers >= 1", self.samples)
+        if not (len(counts) > 0 and all(n >= 1 for n in counts) and all(np.diff(counts) > 0)):
+            raise InvalidValueError("samples", "must be rising whole numbers >= 1", list(self.samples))
+        if counts[-1] > LARGEST_COUNT:
+            raise InvalidValueError("samples", f"must be at most {LARGEST_COUNT}", list(self.samples))
+        if self.replicates > LARGEST_REPLICATES:
+            raise InvalidValueError("replicates", f"must be at most {LARGEST_REPLICATES}", self.replicates)
         for name, least in (("replicates", 4), ("batch", 64), ("seed", 0)):
             if not least <= getattr(self, name) < 1 << 63:
                 raise InvalidValueError(name, f"must be a whole number >= {least}", getattr(self, name))
@@ -98,8 +104,16 @@ def read_study(path: str | Path) -> Study:
         table = tomllib.loads(text)
     except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise InvalidInputError(f"{path} is not valid TOML: {error}", str(path)) from None
+    if "scenes" not in table and "ray" in table:
+        raise InvalidInputError(
+            f"{path} is a scene, not a study: scenes is missing; put it into a [[scenes]] table", "scenes"
+        )
     folder = str(path.resolve().parent)
-    return study_of(json.dumps(_normalised(table, folder), sort_keys=True, default=str), folder, str(path))
+    try:
+        normalised = _normalised(table, folder)
+    except FogproofError as error:
+        raise InvalidInputError(f"{path}: {error}", error.path) from None
+    return study_of(json.dumps(normalised, sort_keys=True, default=str), folder, str(path))
 
 
 def study_of(text: str, folder: str, origin: str = "study") -> Study:
@@ -117,7 +131,7 @@ def study_of(text: str, folder: str, origin: str = "study") -> Study:
     }
     fields = read_fields(types, _with_paths(table, folder), origin)
     try:
-        return Study(**fields, text=text, folder=folder)
+        return Study(**fields, text=text, folder=folder, origin=origin)
     except InvalidValueError as error:
         raise error.inside("the study", origin) from None
 
@@ -131,6 +145,10 @@ def differences(before: str, after: str) -> list[str]:
             lines.append(f"{key} = {shorten(old[key])} is gone")
         elif key not in old:
             lines.append(f"{key} = {shorten(new[key])} is new")
+        elif old[key] != new[key] and key.endswith(".sha256"):
+            table = key.removesuffix(".sha256")
+            whose = new.get(f"{table}.source") or new.get(f"{table}.path") or table
+            lines.append(f"{table}: the contents of {whose} have changed")
         elif old[key] != new[key]:
             lines.append(f"{key}: {shorten(old[key])} has become {shorten(new[key])}")
     return lines

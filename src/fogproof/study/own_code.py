@@ -14,7 +14,7 @@ from types import ModuleType
 from typing import Any
 
 from fogproof.errors import InvalidInputError
-from fogproof.foreign import EndedProcessError, loading
+from fogproof.foreign import EndedProcessError, import_from, loading
 
 NAME = re.compile(r"([^\W\d]\w*(?:\.[^\W\d]\w*)*):([^\W\d]\w*)")
 """module:Name."""
@@ -39,8 +39,8 @@ def loaded(module: str, folder: str) -> ModuleType:
         if not within and _loaded.get(module) != state:
             for name in _sources(module, root, within):
                 sys.modules.pop(name, None)
-        if not within and str(root) not in sys.path:
-            sys.path.insert(0, str(root))
+        if not within:
+            import_from(str(root))
         importlib.invalidate_caches()
         try:
             with loading():

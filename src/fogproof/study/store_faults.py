@@ -58,6 +58,12 @@ def changed(path: Path, before: str, after: str) -> StoreError:
     return StoreError(f"{what}{fix} to go on there, or choose another folder with -o", str(path))
 
 
+def gone(path: Path) -> StoreError:
+    """Return what to say of a file that was moved or removed under our hands."""
+    what = f"{path} was moved or removed while the study ran, with all that was drawn"
+    return StoreError(f"{what}; put it back, or start anew, and give the same command again", str(path))
+
+
 def damaged(path: Path, reason: str) -> DamagedError:
     """Return what to say of a damaged file."""
     fix = "add --salvage to put it aside and go on with the batches that can still be read"

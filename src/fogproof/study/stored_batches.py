@@ -20,7 +20,7 @@ import numpy as np
 from fogproof.study.batches import COLUMNS, BatchResult
 from fogproof.study.files import Study
 from fogproof.study.plan import Batches, BatchStretch
-from fogproof.study.store_faults import changed, damaged, explained
+from fogproof.study.store_faults import changed, damaged, explained, gone
 
 _COLUMNS = "id, moments, tail, cost, wall, cpu, sum"
 _ROOM = 1 << 40
@@ -38,6 +38,7 @@ class Store:
         self._batches = batches
         self._identities = identities
         self._keys: list[int] = []
+        self._file = _of(path)
 
     def done(self) -> set[int]:
         """Return the numbers of the batches that are there."""
@@ -54,6 +55,12 @@ class Store:
             rows = [self._packed(result) for result in results]
             self._connection.executemany("insert or ignore into batches values (?, ?, ?, ?, ?, ?, ?)", rows)
             self._connection.executemany("delete from failures where id = ?", [(row[0],) for row in rows])
+        self.require_there()
+
+    def require_there(self) -> None:
+        """Raise if the file has lost its name: what is written goes into it all the same, and nobody would find it."""
+        if _of(self.path) != self._file:
+            raise gone(self.path)
 
     def fail(self, number: int, attempts: int, error: str) -> None:
         """Note that a batch could not be drawn."""
@@ -220,6 +227,14 @@ def _sum(*fields: str | bytes | int | float | None) -> int:
         words.update(f"{type(field).__name__} {len(data)}:".encode())
         words.update(data)
     return int.from_bytes(words.digest(), "little", signed=True)
+
+
+def _of(path: Path) -> tuple[int, int] | None:
+    """Return what a path leads to, None if to nothing."""
+    with contextlib.suppress(OSError):
+        found = path.stat()
+        return found.st_dev, found.st_ino
+    return None
 
 
 def _whole(row: tuple[Any, ...], identity: str) -> bool:

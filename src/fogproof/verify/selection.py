@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import difflib
 import fnmatch
+import os
 from collections.abc import Iterable
 
 from fogproof.catalogue import Case, all_cases
@@ -20,6 +22,11 @@ def select(patterns: Iterable[str]) -> list[Case]:
     patterns = list(patterns)
     if not patterns:
         return [case for case in all_cases() if not case.by_name]
+    with contextlib.chdir(os.curdir):  # a file of cases may go elsewhere; names that were given mean what they meant
+        return _selected(patterns)
+
+
+def _selected(patterns: list[str]) -> list[Case]:
     offered = packages()
     chosen: dict[str, Case] = {}
     for pattern in patterns:

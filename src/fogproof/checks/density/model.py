@@ -48,16 +48,15 @@ def integrated(chart: Chart, density: Density, pilot: np.ndarray, effort: Effort
 def second_view(chart: Chart, density: Density, pilot: np.ndarray, effort: Effort) -> Leaves:
     """Return other boxes with the same density, none of their first edges in common with those of `integrated`."""
     if len(chart.axes) == 1:
-        inner = (
-            np.quantile(pilot[:, 0], (np.arange(_PANELS // 2) + 0.5) / (_PANELS // 2)) if len(pilot) else np.empty(0)
-        )
+        along = np.sort(pilot[:, 0])
+        inner = _quantiles(along, (np.arange(_PANELS // 2) + 0.5) / (_PANELS // 2))
         breaks = np.unique(np.concatenate([inner, _shifted(chart.axes[0], _SPREAD), chart.axes[0].breaks]))
         low, high = breaks[:-1, None], breaks[1:, None]
     else:
         low, high = corners(tuple(np.union1d(_shifted(axis, _PLANE), axis.breaks) for axis in chart.axes))
     leaves = integrate(density, low, high, effort.tolerance, effort.budget, effort.noise)
     if len(chart.axes) == 1:
-        return looked_at(density, leaves, np.sort(pilot[:, 0]), effort)
+        return looked_at(density, leaves, along, effort)
     return looked_at_plane(density, leaves, pilot[-_POINTS:], effort)
 
 
@@ -69,11 +68,12 @@ def _shifted(axis: Axis, count: int) -> np.ndarray:
 
 def _line(chart: Chart, density: Density, pilot: np.ndarray, effort: Effort) -> Leaves:
     low, high = chart.axes[0].low, chart.axes[0].high
-    inner = np.quantile(pilot, np.arange(_PANELS + 1) / _PANELS) if len(pilot) else np.empty(0)
+    pilot = np.sort(pilot)
+    inner = _quantiles(pilot, np.arange(_PANELS + 1) / _PANELS)
     inner = inner[(inner > low) & (inner < high)]
     breaks = np.unique(np.concatenate([inner, np.linspace(low, high, _SPREAD + 1), chart.axes[0].breaks]))
     leaves = integrate(density, breaks[:-1, None], breaks[1:, None], effort.tolerance, effort.budget, effort.noise)
-    leaves = looked_at(density, leaves, np.sort(pilot), effort)
+    leaves = looked_at(density, leaves, pilot, effort)
     probes = np.concatenate([[1e-9], (np.arange(_PROBES) + 0.5) / _PROBES, [1 - 1e-9]])
     checked = np.empty(0)
     for _ in range(_ROUNDS):
@@ -81,11 +81,22 @@ def _line(chart: Chart, density: Density, pilot: np.ndarray, effort: Effort) -> 
         left, right = leaves.low[fresh, 0], leaves.high[fresh, 0]
         points = left[:, None] + (right - left)[:, None] * probes
         checked = leaves.low[:, 0]
+        nodes = np.where(np.isfinite(leaves.values[fresh]), leaves.values[fresh], 0.0)
+        polynomial = nodes @ TO_COEFFICIENTS @ legendre(2 * probes - 1, len(NODES) - 1)
+        value, width = density(points.ravel()[:, None]), np.repeat(right - left, len(probes))
+        if not _missed(value, polynomial.ravel(), width, effort).any():
+            break
         finer = looked_at(density, leaves, np.sort(points.ravel()), effort, rounds=1)
         if finer is leaves:
             break
         leaves = finer
     return leaves
+
+
+def _quantiles(sorted_points: np.ndarray, shares: np.ndarray) -> np.ndarray:
+    """Return where so many shares of the points lie below, none of no points."""
+    n = len(sorted_points)
+    return np.interp(shares * (n - 1), np.arange(n), sorted_points) if n else np.empty(0)
 
 
 def looked_at(density: Density, leaves: Leaves, points: np.ndarray, effort: Effort, rounds: int = _ROUNDS) -> Leaves:
@@ -194,15 +205,19 @@ def plane_density(leaves: Leaves, owner: np.ndarray, points: np.ndarray) -> np.n
     """Return (n,) the polynomials of the owning boxes (n,) at points (n, 2)."""
     if len(points) == 0:
         return np.empty(0)
-    low, high = leaves.low[owner], leaves.high[owner]
-    s = np.clip((2 * points - low - high) / (high - low), -1, 1)
-    p, q = legendre(s[:, 0], len(NODES) - 1), legendre(s[:, 1], len(NODES) - 1)
-    result = np.zeros(len(points))
     order = np.argsort(owner, kind="stable")
-    for group in np.split(order, np.flatnonzero(np.diff(owner[order])) + 1):
-        coefficients = TO_COEFFICIENTS.T @ leaves.values[owner[group[0]]] @ TO_COEFFICIENTS
-        result[group] = np.sum((coefficients.T @ p[:, group]) * q[:, group], axis=0)
-    return result
+    sorted_owner = owner[order]
+    low, high = leaves.low[sorted_owner], leaves.high[sorted_owner]
+    s = np.clip((2 * points[order] - low - high) / (high - low), -1, 1)
+    p, q = legendre(s[:, 0], len(NODES) - 1), legendre(s[:, 1], len(NODES) - 1)
+    starts = np.flatnonzero(np.diff(sorted_owner, prepend=sorted_owner[0] - 1))
+    coefficients = TO_COEFFICIENTS.T @ leaves.values[sorted_owner[starts]] @ TO_COEFFICIENTS
+    result = np.empty(len(points))
+    for each, start, end in zip(coefficients, starts, [*starts[1:], len(points)], strict=True):
+        result[start:end] = np.einsum("ij,ij->j", each.T @ p[:, start:end], q[:, start:end])
+    unsorted = np.empty(len(points))
+    unsorted[order] = result
+    return unsorted
 
 
 def corners(edges: tuple[np.ndarray, ...]) -> tuple[np.ndarray, np.ndarray]:

@@ -89,18 +89,29 @@ class _Axis:
     @cached_property
     def at(self) -> np.ndarray:
         """The probability below each point, (q,)."""
-        return np.interp(self.counted, self.marginal.edges, self.marginal.cdf)
+        return self._probability(self.counted)
 
     @cached_property
     def shift(self) -> np.ndarray:
         """How far rounding moves each point, (q,), in probability."""
-        m, at = self.marginal, self.at
-        shifts = [np.abs(np.interp(o, m.edges, m.cdf) - at) for o in self.others]
-        if not m.ends:
+        at = self.at
+        shifts = [np.abs(self._probability(other) - at) for other in self.others]
+        if not self.marginal.ends:
             shifts = [np.minimum(shift, 1 - shift) for shift in shifts]
         if self.exact:
             shifts[-1] = _INSIDE * shifts[-1]
         return np.asarray(np.max(shifts, axis=0)) + self.grain
+
+    @cached_property
+    def order(self) -> np.ndarray:
+        """The points along the axis, (q,)."""
+        return np.argsort(self.counted)
+
+    def _probability(self, counted: np.ndarray) -> np.ndarray:
+        """Return the probability below coordinates (q,); looked up along the axis, which is several times faster."""
+        result = np.empty(len(counted))
+        result[self.order] = np.interp(counted[self.order], self.marginal.edges, self.marginal.cdf)
+        return result
 
     def near(self, side: int) -> float:
         """Return how far from a pole points are that rounding may move onto it, in the counted coordinate."""

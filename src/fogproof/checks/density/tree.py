@@ -43,29 +43,29 @@ class Tree:
         n, k = points.shape
         depth = max(int(np.log2(max(n / per_leaf, 1))), 0)
         size = n >> depth
-        cells = points[: size << depth][None]
+        cells = np.ascontiguousarray(points[: size << depth].T)[:, None]  # (k, cells, points): long rows reduce fast
         low, high = np.zeros((1, k)), np.ones((1, k))
         axes, cuts = [], []
         spread = np.quantile(points, [0.01, 0.99], axis=0) if n else np.stack([low[0], high[0]])
         scale = np.maximum(spread[1] - spread[0], _THINNEST)
         for _ in range(depth):
-            least, most = cells.min(axis=1), cells.max(axis=1)
-            if cells.shape[1] >= _CROWD:
-                margin = _MARGIN / cells.shape[1] * (most - least)
+            least, most = cells.min(axis=2).T, cells.max(axis=2).T
+            if cells.shape[2] >= _CROWD:
+                margin = _MARGIN / cells.shape[2] * (most - least)
                 low, high = np.maximum(low, least - margin), np.minimum(high, most + margin)
             axis = np.argmax((most - least) / scale, axis=1)
-            along = np.take_along_axis(cells, axis[:, None, None], axis=2)[:, :, 0]
-            half = cells.shape[1] // 2
+            rows, half = np.arange(cells.shape[1]), cells.shape[2] // 2
+            along = cells[axis, rows]
             order = np.argpartition(along, half, axis=1)
             along = np.take_along_axis(along, order, axis=1)
             cut = 0.5 * (along[:, :half].max(axis=1) + along[:, half])
-            rows = np.arange(len(cells))
             left_high, right_low = high.copy(), low.copy()
             left_high[rows, axis] = np.clip(cut, low[rows, axis], high[rows, axis])
             right_low[rows, axis] = left_high[rows, axis]
             low = np.stack([low, right_low], axis=1).reshape(-1, k)
             high = np.stack([left_high, high], axis=1).reshape(-1, k)
-            cells = np.take_along_axis(cells, order[:, :, None], axis=1)[:, : 2 * half].reshape(-1, half, k)
+            kept = order[:, : 2 * half]
+            cells = np.stack([column[rows[:, None], kept].reshape(-1, half) for column in cells])
             axes.append(axis)
             cuts.append(cut)
         share = (np.prod(high - low, axis=1) > _FLAT).astype(float)

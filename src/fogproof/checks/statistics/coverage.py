@@ -34,7 +34,11 @@ class Coverage:
     squares: tuple[Moments, ...] = field(default_factory=tuple)
 
     def after(self, x: np.ndarray, stderr: np.ndarray, reference: np.ndarray, error: np.ndarray) -> Coverage:
-        """Return the count after values and standard errors (n, channels); a realisation counts if every channel is held."""
+        """Return the count after values (n, channels) and standard errors, one a channel or one of all.
+
+        A realisation counts if every channel is held.
+        """
+        stderr = np.broadcast_to(stderr, x.shape)
         held = np.all(np.abs(x - reference) <= 2 * stderr + error, axis=1)
         largest = float(np.max(stderr)) or 1.0
         unit = 1.0 if 1e-100 < largest < 1e100 else largest

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from fogproof.checks.statistics.binomial import binomial_p
 from fogproof.checks.statistics.cells import MISS
 from fogproof.checks.statistics.moments import Moments
-from fogproof.checks.statistics.tails import normal_quantile
+from fogproof.checks.statistics.tails import binomial_at_most, binomial_interval, normal_quantile
 
 
 def student_reach(data: Moments, alpha: float, miss: float = MISS) -> float:
@@ -35,6 +35,25 @@ def binomial_reach(n: int, low: float, high: float, alpha: float, miss: float = 
     few = _first(lambda misses: binomial_p(n - misses, n, low, high) <= alpha, math.ceil(n * (1 - low)), n)
     fall = low if few is None else low - float(betaincinv(n - few + 1, few, miss))
     return max(rise, fall, 0.0)
+
+
+def sign_reach(n: int, differ: int, alpha: float) -> float:
+    """Return the difference of two probabilities that the sign test finds in n pairs but for `MISS`; `differ` pairs were unlike.
+
+    It grows with the share of unlike pairs, of which `differ` tells an upper bound, and no share so small can be told that too few
+    pairs would be unlike for any rejection, were all of them unlike in the same direction.
+    """
+    from scipy.special import betaincinv
+
+    part = MISS / 4  # a quarter for each bound on the unlike pairs, half for the test
+    least = math.ceil(math.log2(2 / alpha))
+    if least > n:
+        return 1.0
+    barely = float(betaincinv(least, n - least + 1, 1 - part))
+    share = max(binomial_interval(differ, n, 2 * part)[1], barely)
+    unlike = _first(lambda count: binomial_at_most(count, n, share) > part, 0, n)
+    assert unlike is not None
+    return max(2 * share * binomial_reach(unlike, 0.5, 0.5, alpha, 2 * part), barely)
 
 
 def _first(holds: Callable[[int], bool], start: int, end: int) -> int | None:

@@ -1,0 +1,24 @@
+"""What the server of processes does first (`servers`): leave our session, put its environment right, load what takes long."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import os
+
+from fogproof.servers import OURS, PRELOAD
+
+
+def begin(modules: list[str]) -> None:
+    """Begin a server. A module that cannot be loaded is for those to find who need it."""
+    with contextlib.suppress(OSError, AttributeError):  # it leads one already; a system without sessions
+        os.setsid()
+    if os.environ.get("PYTHONSAFEPATH") == OURS:
+        del os.environ["PYTHONSAFEPATH"]
+    for module in modules:
+        with contextlib.suppress(Exception):
+            importlib.import_module(module)
+
+
+if PRELOAD in os.environ:  # by the server alone
+    begin(os.environ.pop(PRELOAD).split(","))

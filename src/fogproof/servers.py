@@ -1,0 +1,85 @@
+"""Fresh processes for other people's code and for workers: forked by one server, which nothing of theirs can reach.
+
+multiprocessing's server of processes is started here, for it would otherwise share more with us than it should. It gets a session
+of its own, so that a signal to our process group, as a scheduler or a closed terminal sends it, asks us alone. It loads modules
+from where they are installed, not a `random.py` that lies beside a file of cases. Its socket lies where a path is short enough for
+one. The watcher of `children` takes the socket's folder away, and ends what the server forked, however we end.
+"""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import multiprocessing
+import multiprocessing.forkserver
+import multiprocessing.resource_tracker
+import os
+import shutil
+import sys
+import tempfile
+import threading
+from collections.abc import Iterator
+from typing import Any
+
+from fogproof import children
+from fogproof.foreign import installed_path
+
+PRELOAD = "FOGPROOF_PRELOAD"
+OURS = "fogproof"
+"""What PYTHONSAFEPATH holds if it was set here."""
+_LONGEST = 60
+"""Characters of a folder for sockets: their paths may have a hundred or so, and their names take forty."""
+_SHORT = "/tmp"
+_lock = threading.Lock()
+
+
+def context(preload: list[str]) -> Any:
+    """Return how to start fresh processes, never as a fork of this one, which would copy locks that other threads hold.
+
+    preload  modules that take long to load: the server, if it is not there yet, loads them once
+    """
+    if "forkserver" not in multiprocessing.get_all_start_methods():
+        return multiprocessing.get_context("spawn")
+    made = multiprocessing.get_context("forkserver")
+    with _lock, _modules(), _environment(PYTHONSAFEPATH=os.environ.get("PYTHONSAFEPATH") or OURS):
+        multiprocessing.resource_tracker.ensure_running()  # before it could carry the word that ends the others
+        _make_folder()
+        with _environment(**{PRELOAD: ",".join(preload), children.WORDS: children.words_of(os.environ)}):
+            made.set_forkserver_preload(["fogproof.server_start"])
+            multiprocessing.forkserver.ensure_running()
+    return made
+
+
+def _make_folder() -> None:
+    """Make the folder in which multiprocessing puts sockets, where their paths are short. It is removed after us, or by us."""
+    settings: dict[str, Any] = multiprocessing.current_process()._config  # type: ignore[attr-defined]
+    if settings.get("tempdir"):
+        return
+    short = _SHORT if len(tempfile.gettempdir()) > _LONGEST and os.access(_SHORT, os.W_OK) else None
+    folder = settings["tempdir"] = tempfile.mkdtemp(prefix=f"fogproof-{os.getpid()}-", dir=short)
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    children.remove_after(folder)
+
+
+@contextlib.contextmanager
+def _environment(**told: str) -> Iterator[None]:
+    before = {name: os.environ.get(name) for name in told}
+    os.environ.update(told)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
+
+
+@contextlib.contextmanager
+def _modules() -> Iterator[None]:
+    before = list(sys.path)
+    sys.path[:] = installed_path()
+    try:
+        yield
+    finally:
+        sys.path[:] = before

@@ -1,0 +1,56 @@
+"""Why a start failed, in a sentence: too little memory to load libraries, or a file that bears the name of a module.
+
+The standard library alone: this is asked while nothing else can be relied on.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import sysconfig
+import traceback
+
+BAD_INPUT = 2
+FAULT = 70
+_NO_ROOM = ("failed to map segment", "cannot allocate memory", "cannot apply additional memory protection")
+
+
+def end_of(error: BaseException) -> tuple[str, int]:
+    """Return the sentence and the exit code for an error while modules are loaded; the code is `FAULT` if it is our own."""
+    behind = _behind(error)
+    if any(isinstance(one, MemoryError) or any(words in str(one).lower() for words in _NO_ROOM) for one in behind):
+        return "there is not enough memory to load what this needs; allow more (ulimit -v)", BAD_INPUT
+    for one in behind:
+        for frame in reversed(traceback.extract_tb(one.__traceback__)):
+            name = shadowed(frame.filename)
+            if name:
+                where = f"{frame.filename} stands in the place of the module {name}"
+                return f"{where}; rename it, or take its folder out of PYTHONPATH", BAD_INPUT
+    return f"{type(error).__name__}: {error}", FAULT
+
+
+def shadowed(filename: str) -> str:
+    """Return the name of the installed or standard module in whose place a file is found, "" if it is in nobody's."""
+    folder, file = os.path.split(os.path.abspath(filename))
+    if os.path.basename(filename) == "__init__.py":
+        folder, file = os.path.split(folder)
+    name = file.removesuffix(".py")
+    homes = {os.path.abspath(path) for path in (*sysconfig.get_paths().values(), os.path.dirname(os.__file__))}
+    if any(folder == home or folder.startswith(home + os.sep) for home in homes):
+        return ""
+    if name in sys.stdlib_module_names:
+        return name
+    found = (os.path.join(home, name) for home in homes)
+    return name if any(os.path.isfile(f"{path}.py") or os.path.isfile(f"{path}/__init__.py") for path in found) else ""
+
+
+def _behind(error: BaseException) -> list[BaseException]:
+    """Return an error and all that caused it."""
+    found: list[BaseException] = []
+    ahead: list[BaseException | None] = [error]
+    while ahead:
+        one = ahead.pop()
+        if one is not None and one not in found:
+            found.append(one)
+            ahead += [one.__context__, one.__cause__]
+    return found
