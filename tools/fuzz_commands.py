@@ -130,7 +130,8 @@ def requests(rng: random.Random, folder: Path, record: dict[str, Any]) -> Run:
     file.write_bytes(content)
     place = rng.choice(("-", str(file)))
     if rng.random() < 0.3:
-        return Run(["golden", "--requests", place, "--format", rng.choice(("json", "csv", "c", "npz"))], stdin=content)
+        kind = rng.choice(("json", "csv", "c", "npz"))
+        return Run(["golden", "--requests", place, "--format", kind, "--timeout", "2"], stdin=content)
     return Run(["oracle", place, "--timeout", "2"], stdin=content)
 
 

@@ -14,6 +14,7 @@ import multiprocessing
 import multiprocessing.forkserver
 import multiprocessing.resource_tracker
 import os
+import secrets
 import shutil
 import sys
 import tempfile
@@ -30,6 +31,7 @@ OURS = "fogproof"
 _LONGEST = 60
 """Characters of a folder for sockets: their paths may have a hundred or so, and their names take forty."""
 _SHORT = "/tmp"
+_WORD = secrets.token_hex(16)
 _lock = threading.Lock()
 
 
@@ -44,10 +46,17 @@ def context(preload: list[str]) -> Any:
     with _lock, _modules(), _environment(PYTHONSAFEPATH=os.environ.get("PYTHONSAFEPATH") or OURS):
         multiprocessing.resource_tracker.ensure_running()  # before it could carry the word that ends the others
         _make_folder()
-        with _environment(**{PRELOAD: ",".join(preload), children.WORDS: children.words_of(os.environ)}):
+        words = f"{children.words_of(os.environ)} {_WORD}"
+        with _environment(**{PRELOAD: ",".join(preload), children.WORDS: words}):
             made.set_forkserver_preload(["fogproof.server_start"])
             multiprocessing.forkserver.ensure_running()
     return made
+
+
+def end() -> None:
+    """End the server and all that it forked: one that still loads what takes long would let whoever asked it wait for that."""
+    if os.name == "posix":
+        children.end_all((), [_WORD])
 
 
 def _make_folder() -> None:

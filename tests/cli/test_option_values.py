@@ -25,6 +25,7 @@ TAKES = {
     ("zoo", "none"): ["--alpha"],
     ("bench", "none"): ["--seconds"],
     ("oracle", "none.json"): ["--timeout"],
+    ("golden", "none"): ["--timeout"],
 }
 NOBODY_CAN_USE = ["nan", "inf", "-1", "1e300", "a"]
 

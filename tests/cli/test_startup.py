@@ -10,9 +10,10 @@ from functools import partial
 from pathlib import Path
 
 import pytest
+from fuzz_commands import Run, here
 
-from fogproof import input_files
-from fogproof.checks.limits import isolated
+from fogproof import input_files, servers
+from fogproof.checks.limits import end_isolated, isolated
 from fogproof.children import carrying
 from fogproof.cli import signals
 from fogproof.cli.signals import Listening, Stopped
@@ -110,6 +111,28 @@ def test_a_subject_hears_no_signal_of_our_group():
 
 
 @POSIX
+def test_a_server_that_still_loads_is_ended(tmp_path, monkeypatch):
+    (tmp_path / "slow_to_load.py").write_text("import time; time.sleep(60)")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    begun = servers.context
+    monkeypatch.setattr(servers, "context", lambda slow: begun(["slow_to_load"]))
+    servers.end()
+
+    def ask():
+        with pytest.raises(OSError, match="no process could be started"):
+            isolated(int)
+
+    asked = threading.Thread(target=ask, daemon=True)
+    asked.start()
+    for _ in range(100):
+        end_isolated()
+        asked.join(0.1)
+        if not asked.is_alive():
+            return
+    pytest.fail("it is still waited for")
+
+
+@POSIX
 def test_pipes_that_do_not_block_are_waited_for():
     reading, writing = os.pipe()
     os.set_blocking(writing, False)
@@ -175,3 +198,9 @@ def test_no_bytecode_is_left_cut_short(tmp_path):
     env = {**os.environ, "PYTHONPATH": str(tmp_path), "PYTHONDONTWRITEBYTECODE": ""}
     subprocess.run([sys.executable, "-c", start], env=env, cwd=tmp_path, check=True)
     assert not (tmp_path / "__pycache__").exists()
+
+
+@POSIX
+def test_a_table_has_a_time_limit():
+    end = here(Run(["golden", "slab_reflectance", "--timeout", "1e-6"]))
+    assert (end.code, b"no answer within 1e-06 s" in end.err) == (2, True)

@@ -49,7 +49,8 @@ def isolated(check: Callable[[], Answer], seconds: float | None = None) -> Answe
 
 
 def end_isolated() -> None:
-    """End whatever `isolated` still waits for."""
+    """End whatever `isolated` still waits for, be it a process that has not begun."""
+    servers.end()
     for child in multiprocessing.active_children():
         if child.name == _NAME:
             child.kill()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 import sys
 from collections.abc import Callable
 from functools import partial
@@ -11,6 +12,7 @@ from typing import Any
 import click
 
 from fogproof.cli.terminal import requests_on_stdin
+from fogproof.cli.values import SECONDS_OR_NONE
 from fogproof.errors import FogproofError, InvalidInputError, TooLargeError
 from fogproof.golden import golden_entries, to_c, to_csv, to_json_document, to_npz
 from fogproof.input_files import read_requests
@@ -27,8 +29,15 @@ FORMATS: dict[str, Callable[..., str | bytes]] = {"json": to_json_document, "csv
 @click.option(
     "--requests", metavar="FILE|-", help="Lines of JSON as for `fogproof oracle`: the questions to be answered."
 )
+@click.option(
+    "--timeout",
+    type=SECONDS_OR_NONE,
+    default=Limits.seconds,
+    show_default=True,
+    help="Seconds for one answer, 0 for no limit.",
+)
 @click.option("-o", "--output", metavar="FILE", help="Where to write, stdout unless given.")
-def command(quantities: tuple[str, ...], kind: str, requests: str | None, output: str | None) -> int:
+def command(quantities: tuple[str, ...], kind: str, requests: str | None, timeout: float, output: str | None) -> int:
     """Write reference values with error bounds and conventions, for test suites that run without fogproof.
 
     Without --requests these are the proven values of each QUANTITY, if there are any, and its example
@@ -39,7 +48,8 @@ def command(quantities: tuple[str, ...], kind: str, requests: str | None, output
     """
     if not quantities and requests is None:
         raise click.UsageError("name a QUANTITY (`fogproof oracle --list` has them), or give --requests FILE")
-    content = FORMATS[kind](golden_entries(quantities, None if requests is None else _read(requests)))
+    limits = Limits(seconds=timeout or math.inf)
+    content = FORMATS[kind](golden_entries(quantities, None if requests is None else _read(requests), limits))
     raw = content.encode("utf-8") if isinstance(content, str) else content
     if output is None:
         sys.stdout.buffer.write(raw)

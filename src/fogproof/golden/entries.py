@@ -13,7 +13,7 @@ import numpy as np
 
 from fogproof.analytic.proven.golden import Golden, golden_values
 from fogproof.errors import InvalidInputError
-from fogproof.oracle import answer
+from fogproof.oracle import Limits, answer
 from fogproof.quantities import Quantity, quantities
 
 
@@ -48,31 +48,34 @@ class Row:
     error: float
 
 
-def golden_entries(names: Sequence[str], requests: Sequence[dict[str, Any]] | None = None) -> list[Entry]:
+def golden_entries(
+    names: Sequence[str], requests: Sequence[dict[str, Any]] | None = None, limits: Limits | None = None
+) -> list[Entry]:
     """Return the entries of some quantities: proven values and the example, or the answers to given requests.
 
     names     quantities; with requests, those to keep, all if there are none
     requests  as for `fogproof.oracle.answer`
+    limits    what each answer may cost
     """
     for name in names:
         if name not in quantities():
             known = ", ".join(quantities())
             raise InvalidInputError(f"quantity {name!r} is not known; known are {known}", "quantity")
     if requests is not None:
-        return [_answered(request) for request in requests if not names or request.get("quantity") in names]
+        return [_answered(request, limits) for request in requests if not names or request.get("quantity") in names]
     proven = golden_values()
     return [
         entry
         for name in names
         for entry in (
             *(_proven(golden) for golden in proven if golden.request["quantity"] == name),
-            _answered({"quantity": name, **quantities()[name].example}),
+            _answered({"quantity": name, **quantities()[name].example}, limits),
         )
     ]
 
 
-def _answered(request: dict[str, Any]) -> Entry:
-    found = answer(request)
+def _answered(request: dict[str, Any], limits: Limits | None) -> Entry:
+    found = answer(request, limits=limits)
     question = {key: value for key, value in request.items() if key != "id"}
     value, error = found["value"], found["error"]
     return Entry(quantities()[found["quantity"]], question, value, error, found["method"], found["source"])

@@ -59,10 +59,8 @@ def run(
             yield done.result()
     finally:
         pool.shutdown(wait=False, cancel_futures=True)
-        while True:  # a process that was about to start is there only now
+        while not all(job.done() for job in jobs):  # one that was about to start a process may start it only now
             end_isolated()
-            if all(job.done() for job in jobs):
-                break
             time.sleep(_LOOK)
         pool.shutdown(wait=True)
 
