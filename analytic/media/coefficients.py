@@ -19,7 +19,7 @@ from fogproof.scene import AnyMedium, Medium
 from fogproof.scene.arrays import PointArray
 from fogproof.scene.kinds import given
 from fogproof.scene.media import AnyMediumField
-from fogproof.validate import points, unit_vectors
+from fogproof.validate import as_float_array, points, unit_vectors
 
 ROOM = "fogproof.analytic.media"
 
@@ -109,13 +109,21 @@ def coefficients(medium: AnyMediumField, x: PointArray, w: PointArray, channels:
     own = given(medium, ROOM, "coefficients")
     if own is None:
         raise UnsupportedError(f"the oracle does not know the coefficients of a {type(medium).__name__}", "medium")
-    x, w = np.broadcast_arrays(np.asarray(x, float), np.asarray(w, float))
+    x, w = np.broadcast_arrays(_vectors("x", x), _vectors("w", w))
     spend(x.size // 3)
     channels = medium.channels if channels is None else channels
     place = x if channels is None else x[..., None, :]
     shape = x.shape[:-1] if channels is None else (*x.shape[:-1], channels)
     found = own(medium, Points(x, w, place, shape))
     return Coefficients(*(np.broadcast_to(np.asarray(v, float), shape) for v in found))
+
+
+def _vectors(name: str, value: Any) -> np.ndarray:
+    array = as_float_array(name, value)
+    if array.ndim == 0 or array.shape[-1] != 3:
+        rule = "must have three coordinates in its last axis"
+        raise InvalidValueError(name, rule, list(array.shape), "pass [x, y, z]")
+    return array
 
 
 def by_albedo(sigma_t: Any, albedo: Any, emission: Any) -> Coefficients:

@@ -15,7 +15,7 @@ from fogproof import (
 )
 from fogproof.errors import InvalidValueError
 
-N = 100_000
+N = 60_000
 
 
 def ones(x):
@@ -67,7 +67,7 @@ def test_declared_coarse_uniforms_may_leave_gaps(bits):
 
 def test_coarse_uniforms_hide_no_more_than_their_step():
     def sample(rng, n):
-        return -np.log1p(-rng.integers(0, 2**12, n) / 2**12) / 1.1
+        return -np.log1p(-rng.integers(0, 2**12, n) / 2**12) / 1.6
 
     verdict = check_sampler(sample, lambda x: np.exp(-x), HalfLine(0), dimensions=None, samples=N, uniform_bits=12)
     assert verdict.outcome == "rejected"
@@ -115,6 +115,13 @@ def test_a_pole_at_an_end_whose_mass_lies_within_rounding_is_not_known():
 def test_a_support_larger_than_the_domain_changes_nothing():
     verdict = passes(lambda u: u[:, 0], ones, Interval(0, 1), support=Interval(-1, 2))
     assert any("support" in word for word in verdict.unchecked)
+
+
+def test_points_of_a_sequence_need_no_generator():
+    def sequence(rng, n):
+        return np.arange(1, n + 1) * 0.5 * (np.sqrt(5) - 1) % 1
+
+    passes(sequence, ones, Interval(0, 1), dimensions=None, quasi_random=True)
 
 
 def test_an_atom_may_have_all_probability():

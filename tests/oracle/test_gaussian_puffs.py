@@ -125,3 +125,14 @@ def test_over_json_and_refused():
     ):
         with pytest.raises(InvalidValueError, match=name):
             GaussianPuffs(*bad)
+
+
+def test_far_tails_of_a_puff_glow():
+    """Ten widths beside the middle, on both sides: what glows there is e^-50 of the middle, and counts."""
+    puff = GaussianPuffs([(0, 0, 0)], [0.5], [1.0], 0.0, emission=2.0)
+    for ray in (Ray((0, 0, 5), (0, 0, 1), 1.0), Ray((5, 0, -1), (0, 0, 1), 2.0), Ray((0, 0, -9), (0, 0, 1), 4.5)):
+        found = radiance_by_quadrature(puff, ray)
+        with mp.workdps(40):
+            truth = -2 * mp.expm1(-exactly(puff, ray))
+        assert truth > 0
+        assert abs(found.value - truth) <= found.error <= 1e-9 * truth

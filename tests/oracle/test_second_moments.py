@@ -284,6 +284,11 @@ def test_what_makes_no_sense_is_refused():
         (lambda: transmittance_variance(medium, ray, "ratio"), "majorant must be a number"),
         (lambda: transmittance_variance(medium, ray, "ratio", 0.0), "majorant must be > 0"),
         (lambda: transmittance_variance(medium, ray, "delta", 0.9), "majorant must not lie below sigma_t"),
+        (lambda: transmittance_variance(medium, ray, "delta", 1 - 1e-9), "majorant must not lie below sigma_t"),
+        (
+            lambda: transmittance_lookups(PiecewiseConstantMedium((0, 1, 2), (1.0, 3.0)), ray, "delta", 2.99),
+            "reaches 3",
+        ),
         (lambda: transmittance_lookups(HETEROGENEOUS["linear"][0], Ray((0, 0, 0), Z, 5.0), "delta", 1.0), "majorant"),
         (lambda: transmittance_variance(medium, ray, "ratio", 1.0, 0.5), "control must be 0 for ratio"),
     ]

@@ -89,6 +89,7 @@ FAULTS = {
     "exit at once": ("import os; os._exit(0)", "my_module:Analog", "cannot import my_module: the code ends the process"),
     "constructor": (MINE.replace("scale=1.0", "size"), "my_module:Analog", "missing 1 required positional argument: 'size'"),
     "no draw": (MINE.replace("def draw", "def drew"), "my_module:Analog", "which has no draw(rng, n)"),
+    "ends": (MINE.replace("return self", "raise SystemExit(4) or self"), "my_module:Analog", "draw: SystemExit: 4"),
     "raises": (MINE.replace("return self", "return 1 / 0 + self"), "my_module:Analog", "draw: ZeroDivisionError"),
     "shape": (MINE.replace("return self", "return 1.0; self"), "my_module:Analog", "must return 1 numbers, got shape ()"),
     "dimensions": (MINE.replace("dimensions = 1", "dimensions = 'x'"), "my_module:Analog", "dimensions must be a whole"),
@@ -104,3 +105,11 @@ def test_faults_are_told(tmp_path, name):
         prepare(cells_of(read_study(path)))
     assert words in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+def test_what_is_no_number_has_no_bias(tmp_path):
+    text = MINE.replace("return self", "return np.nan * self")
+    path = study_file(tmp_path / "s", [{"kind": "my_module:Analog"}], text)
+    for estimator in run_study(read_study(path), tmp_path / "run")["scenes"][0]["estimators"]:
+        assert estimator["status"] == "rejected"
+        assert estimator["bias"] is None

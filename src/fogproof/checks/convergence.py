@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -114,10 +115,10 @@ def _levels(
     if reference is not None:
         one = Reference.of("reference", reference)
         value, error = (np.broadcast_to(part, (channels,)) for part in (one.value, one.error))
-        for row, n in zip(rows, sizes, strict=True):
+        for row, n in reversed(list(zip(rows, sizes, strict=True))):  # the most samples first: they are what is used
             jobs.append((f"mean with {n} samples", "mean", row, value, error + absolute + relative * np.abs(value)))
     else:
-        for j, k in sorted({(k - 1, k) for k in range(1, len(sizes))} | {(0, len(sizes) - 1)}):
+        for j, k in sorted({(k - 1, k) for k in range(1, len(sizes))} | {(0, len(sizes) - 1)}, reverse=True):
             slack = absolute + relative * np.abs(rows[j].mean(axis=0))
             name = f"{sizes[k]} against {sizes[j]} samples"
             jobs.append((name, "difference", rows[k] - rows[j], np.zeros(channels), slack))
@@ -128,9 +129,12 @@ def _levels(
             label = f"{name}, channel {c}" if channels > 1 else name
             data = Moments.of(np.ascontiguousarray(numbers[:, c]))
             known = Known(0.0, light=True) if data.m2 == 0 and reference is not None else Known(light=True)
-            findings.append(
-                mean_test(label, what, data, float(value[c]), float(error[c]), share, "bias", known, ways=_REPLICATES)
+            found = mean_test(
+                label, what, data, float(value[c]), float(error[c]), share, "bias", known, ways=_REPLICATES
             )
+            if found.resolution is not None:  # each number of samples has its own
+                found = replace(found, resolution=replace(found.resolution, kind=f"bias of {label}"))
+            findings.append(found)
     return findings
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+import inspect
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -127,9 +128,26 @@ def as_array(what: str, value: Any) -> np.ndarray:
             f"{what} cannot be read as an array ({type(error).__name__}: {error}); {fix}", what
         ) from None
     if array.dtype.kind not in "iufb":
-        fix = "; return real and imaginary parts as two channels" if array.dtype.kind == "c" else ""
-        raise SubjectError(f"{what}: draw must return numbers, got dtype {array.dtype}{fix}", what)
+        raise SubjectError(f"{what}: draw must return numbers, got {_instead(value, array)}", what)
     return array
+
+
+def _instead(value: Any, array: np.ndarray) -> str:
+    """Return what came instead of numbers, and how to mend it, if that is plain."""
+    if value is None:
+        return "None; does draw end without a return?"
+    if inspect.iscoroutine(value):
+        value.close()  # nobody will await it
+        return "a coroutine; draw must be a plain function, not an async one"
+    if isinstance(value, Iterator):
+        return f"a {type(value).__name__}; collect what it yields: np.fromiter(values, float)"
+    if isinstance(value, Mapping):
+        return f"a {type(value).__name__}; return its values as an array, or Draws(value, cost, order, stderr)"
+    fix = {
+        "c": "; return real and imaginary parts as two channels",
+        "O": "; convert them: np.asarray(values, dtype=float)",
+    }
+    return f"dtype {array.dtype}{fix.get(array.dtype.kind, '')}"
 
 
 def calls_of(n: int, batches: int) -> list[int]:

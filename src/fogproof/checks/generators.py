@@ -105,7 +105,8 @@ def _overlaps(u: np.ndarray, alpha: float) -> Finding:
     equal = np.flatnonzero(prints[order][1:] == prints[order][:-1])
     if not len(equal):
         return Finding("overlap", "not rejected", f"no {length} successive numbers occur twice", alpha=alpha)
-    a, b = owner[order][equal[0]], owner[order][equal[0] + 1]
+    pairs = np.stack([owner[order][equal], owner[order][equal + 1]])
+    a, b = pairs[:, np.lexsort(pairs[::-1])[0]]
     message = f"{len(equal)} stretches of {length} numbers occur again, the first in streams {a} and {b}"
     effect = len(equal) / len(prints)
     return Finding("overlap", "rejected", message, alpha=alpha, effect=effect, cause="dependent samples")

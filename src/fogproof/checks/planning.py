@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from fogproof.checks.arguments import bounds_of
+from fogproof.checks.arguments import bounds_of, whole
 from fogproof.checks.judgement import share_of_means
 from fogproof.checks.statistics.bets import Bets
 from fogproof.checks.statistics.extremes import detectable
@@ -56,12 +56,12 @@ def samples_for(
     number("bias", bias, "must be > 0", 0, open_ends=True)
     number("false_fail", false_fail, "must lie in (0, 1)", 0, 1, open_ends=True)
     number("false_pass", false_pass, "must lie in (0, 0.5]", 0, 0.5)
-    number("channels", channels, "must be >= 1", 1)
+    channels = whole("channels", channels, 1)
     if [variance, probability, bounds].count(None) != 2:
         given = {"variance": variance, "probability": probability, "bounds": bounds}
         raise InvalidValueError("variance, probability or bounds", "must be given, one of them", given)
     declared = bounds is not None or whatever_the_law
-    claims = int(channels) * (2 if whatever_the_law else 1)
+    claims = channels * (2 if whatever_the_law else 1)
     usual, distribution_free, bets = share_of_means(false_fail, claims, declared)
     if probability is not None:
         p = number("probability", probability, "must lie in [0, 1]", 0, 1)
@@ -69,6 +69,8 @@ def samples_for(
         return _smallest(lambda n: binomial_reach(n, p, p, usual, false_pass), bias)
     if bounds is not None:
         low, high = bounds_of(bounds)
+        if not math.isfinite(high - low):
+            raise InvalidValueError("bounds", "must be finite to plan by them; give variance= instead", bounds)
         number("bias", bias, "must be possible within the bounds", 0, high - low)
         known = Known(low=low, high=high)
         return _smallest(lambda n: detectable(n, known, distribution_free, false_pass), bias)

@@ -105,7 +105,7 @@ def _questions(subject: Subject, pilot: Pilot, seed: int) -> list[Finding]:
     findings = []
     if subject.dimensions is None:
         findings.append(no_edge_uniforms())
-        if subject.pilot is None:  # of samples that are there already no generator has a say
+        if subject.pilot is None and not subject.quasi_random:  # where a generator has a say
             findings.append(heeds_generator(subject, seed))
     else:
         uniforms = subject.uniforms(batch_generator(seed, "samples", 0, 0), PILOT)

@@ -73,7 +73,7 @@ def check_sampler(
     reference    x -> `Reference`: what pdf(x) should be, from an independent source
     precision    "float32" if the sampler computes in single precision: uniforms and tolerances follow
     events       {label: probability} of every event label that `Draw.event` may have
-    uniform_bits how many bits the uniforms inside the sampler have, if fewer than the precision's own: repeated values follow
+    uniform_bits how many bits the uniforms inside the sampler have, if fewer than the precision's own: repeats and gaps follow
     quasi_random True if the points of one call are stratified or a low-discrepancy sequence: only their distribution is tested
     breaks       {coordinate: where the pdf may jump}, such as the edges of a table's cells: {"x": edges}; coordinates are called
                  x and y on the plane, mu and phi on the sphere, r and phi on the disk

@@ -80,7 +80,9 @@ def judge(cell: Cell, levels: Sequence[Level], variance: Reference | None, alpha
     findings: list[Finding] = []
     warning, times_as_many = "", 1.0
     if bad:
-        findings.append(Finding("finite values", "rejected", f"{bad} realisations are not finite", cause="bias"))
+        findings.append(
+            Finding("finite values", "rejected", f"{bad} realisations are not finite", cause="not a number")
+        )
     elif not any(len(level.rows) for level in levels):
         findings.append(Finding("mean", "inconclusive", "nothing has been drawn"))
     elif out_of_range(cell, levels):

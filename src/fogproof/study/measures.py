@@ -133,7 +133,7 @@ def _expected_order(cell: Cell) -> float | None:
 
 
 def _bias(cell: Cell, levels: Sequence[Level], data: Moments, error: float) -> Estimate | None:
-    if not levels:
+    if not levels or any(level.bad for level in levels):
         return None
     if cell.method.axis == "samples" and cell.points == "random":
         off, reach = data.mean - float(cell.reference.value), Z * data.stderr

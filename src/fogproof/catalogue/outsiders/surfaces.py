@@ -38,6 +38,27 @@ def visible_normals(view: Vector, alpha: tuple[float, float]) -> Outsider:
     return Outsider(sample, pdf, UnitHemisphere(), 2)
 
 
+def reflected_half_vectors(view: Vector, alpha: float) -> Outsider:
+    """Return a view reflected at half vectors h of density D cos: below the horizon too, with the Jacobian 1 / (4 |h . wo|)."""
+    wo = _unit(np.array(view))
+
+    def normals(cosine: np.ndarray) -> np.ndarray:
+        return np.asarray(alpha**2 * cosine / (np.pi * (cosine * cosine * (alpha**2 - 1) + 1) ** 2))
+
+    def sample(u: np.ndarray) -> np.ndarray:
+        z = np.sqrt((1 - u[:, 0]) / (1 - u[:, 0] * (1 - alpha**2)))
+        s, phi = np.sqrt(np.clip(1 - z * z, 0, 1)), _TURN * u[:, 1]
+        h = np.stack([s * np.cos(phi), s * np.sin(phi), z], axis=-1)
+        return np.asarray(_unit(2 * (h @ wo)[:, None] * h - wo))
+
+    def pdf(w: np.ndarray) -> np.ndarray:
+        h = w + wo
+        length = np.linalg.norm(h, axis=1)
+        return normals(np.abs(h[:, 2]) / length) / (2 * length)  # 2 |h . wo| is the length of wo + w
+
+    return Outsider(sample, pdf, UnitSphere(), 2)
+
+
 def transformed_cosine(rows: tuple[Vector, Vector, Vector]) -> Outsider:
     """Return a linearly transformed cosine: w = M w_o / |M w_o|, whose density is that of w_o times det M^-1 / |M^-1 w|^3."""
     m = np.array(rows)
@@ -94,6 +115,8 @@ def cases() -> list[SamplerCase]:
     ):
         make = partial(visible_normals, view, alpha)
         found.append(case(f"surfaces/visible-normals/{name}", f"Visible normals, {name}", make, "Dupuy & Benyoub 2023"))
+    half = partial(reflected_half_vectors, (0.5, 0.3, 0.8), 0.4)
+    found.append(case("surfaces/reflected-half-vectors", "Half vectors, reflected", half, "Walter et al. 2007"))
     rows = ((0.5, 0.0, 0.2), (0.0, 0.4, 0.0), (-0.3, 0.0, 1.0))
     cosine = partial(transformed_cosine, rows)
     found.append(case("surfaces/transformed-cosine", "Linearly transformed cosine", cosine, "Heitz et al. 2016"))

@@ -104,7 +104,7 @@ class Own(Method):
             made = self._maker()(scene, **self.options)
         except FogproofError:
             raise
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             raise SubjectError(f"{self.source}: {type(error).__name__}: {error}", self.source) from None
         if not callable(getattr(made, "draw", None)):
             raise SubjectError(f"{self.source} made {type(made).__name__}, which has no draw(rng, n)", "draw")
@@ -124,7 +124,7 @@ class _Answering:
             shape = np.asarray(drawn.value if isinstance(drawn, Draws) else drawn, dtype=np.float64).shape
         except FogproofError:
             raise
-        except Exception as error:
+        except (Exception, SystemExit) as error:  # what ends a program must not end a study
             raise SubjectError(f"{self.source}: draw: {type(error).__name__}: {error}", "draw") from None
         if shape not in ((n,), (n, 1)):
             raise SubjectError(f"{self.source}: draw(rng, {n}) must return {n} numbers, got shape {shape}", "draw")
