@@ -132,7 +132,10 @@ $(VENV)/bin/python:
 	$(PYTHON) -m venv $(VENV) || { echo "python3 -m venv failed: on Debian, apt-get install python3-venv" >&2; exit 1; }
 	$(BIN)/python -m pip install --quiet --upgrade 'pip>=25.1'
 
+# An environment that was there may have an old pip, and a copy of fogproof: caches that its removal leaves would hide the sources.
 $(VENV)/.installed: $(VENV)/bin/python pyproject.toml
+	$(BIN)/python -m pip install --quiet --upgrade 'pip>=25.1'
+	@$(BIN)/python -m pip uninstall --quiet --yes fogproof 2>/dev/null; rm -rf $(VENV)/lib/python3.*/site-packages/fogproof
 	$(BIN)/python -m pip install --quiet --editable '.[mie,mitsuba,images]'
 	@touch $@
 

@@ -77,6 +77,7 @@ class Synthetic(Method):
     name   its law: "independent", normal and without bias; "biased", the same and off by `bias_of`; "quasi", whose estimates err by
            sigma / count, normal, as of points that fill space evenly; "march", off by exactly sigma / steps^order
     fixed, each  seconds of a call and of a sample
+    power  what the time of the samples grows with, if it is not their number
     """
 
     name: str
@@ -85,13 +86,14 @@ class Synthetic(Method):
     each: float
     order: float = 0.5
     bias_of: float = 0.0
+    power: float = 1.0
     clock: ClassVar[Clock]
     quantity = "transmittance"
 
     @property
     def title(self) -> str:
         """Its law and its deviation."""
-        return f"{self.name} {self.sigma:g} {self.fixed:g}"
+        return f"{self.name} {self.sigma:g} {self.fixed:g} {self.power:g}"
 
     @property
     def axis(self) -> str:
@@ -115,7 +117,7 @@ class Synthetic(Method):
 
     def time(self, count: float) -> float:
         """Return the true time of an estimate [s]."""
-        return self.fixed + self.each * count
+        return self.fixed + self.each * count**self.power
 
     def time_to(self, target: float) -> float:
         """Return the true time to an error; inf if the bias is larger."""
@@ -146,6 +148,8 @@ LAWS = (
     Synthetic("independent", 0.1, 1e-4, 2e-6),
     Synthetic("independent", 2.0, 1e-6, 5e-8),
     Synthetic("biased", 0.05, 3e-5, 1e-6, bias_of=0.004),
+    Synthetic("independent", 0.3, 3e-5, 1e-9, power=2.0),
+    Synthetic("independent", 0.4, 1e-5, 2e-5, power=0.5),
     Synthetic("quasi", 1.0, 4e-5, 3e-7, order=1.0),
     Synthetic("march", 3.0, 5e-6, 4e-7, order=2.0),
     Synthetic("march", 0.3, 5e-6, 1e-7, order=1.0),

@@ -1,6 +1,7 @@
 """A study file says what is wrong with it in one sentence; what is not its content does not identify it."""
 
 import copy
+from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
@@ -81,6 +82,14 @@ def test_files_that_are_no_studies_are_told(tmp_path, text):
         read_study(file)
     with pytest.raises(FogproofError, match="cannot read the study file"):
         read_study(tmp_path / "none.toml")
+
+
+def test_the_documentation_lists_every_estimator_and_its_options():
+    page = (Path(__file__).resolve().parents[2] / "docs" / "studies.md").read_text(encoding="utf-8")
+    for kind, cls in METHODS.items():
+        row = next((line for line in page.splitlines() if line.startswith(f"| {cls.quantity} |")), "")
+        for name in (kind, *(field.name for field in fields(cls))):
+            assert f"`{name}`" in row, (kind, name)
 
 
 def test_every_fault_names_the_file(tmp_path):

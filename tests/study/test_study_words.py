@@ -137,6 +137,8 @@ def test_no_interval_on_the_page_is_without_sense(told):
 def test_one_count_tells_no_time_of_more_and_draws_no_fall(tmp_path):
     record = run_study(read_study(written(tmp_path, ("Plain",), samples=[16])), tmp_path / "run")
     assert [t["how"] for t in record["scenes"][0]["estimators"][0]["speed"]["targets"]] == ["not-reached"] * 3
+    said = "Of “Plain, as it should be” what more samples would take these counts do not tell: add a larger one to `samples`."
+    assert said in record["scenes"][0]["answer"]["text"]
     write_report(read_record(tmp_path / "run"), tmp_path / "run", keep=True)
     page = (tmp_path / "run" / "index.html").read_text()
     assert "Error against samples" not in page

@@ -40,6 +40,7 @@ _TELLING = {
 }
 """Words of an example that say more than the name of the promise."""
 
+_ENOUGH = 16  # densities that tell how they are wrong
 _USUAL = 4.0  # times the median: noise has tails
 
 
@@ -147,12 +148,16 @@ class Watch:
         if differ.any():
             slack = rounding_spread(subject.density, x[at[differ]], subject.roundoff)
             differ[differ] = ~(np.abs(got[differ] - p[differ]) <= _with_usual_noise(slack, p[differ]))
-        few = rounded(subject.density, x[at[differ]], got[differ], p[differ], x) if differ.any() else ""
+        why = ""
+        if differ.any():
+            why = rounded(subject.density, x[at[differ]], got[differ], p[differ], x) or _relation(
+                got[differ], p[differ]
+            )
         self._note(
             "returned pdf",
             differ,
             lambda i: (
-                f"sample returned {got[i]:.9g}, pdf(x) is {p[i]:.9g} at x = {shorten(x[at[i]])}{_ratio(got[i], p[i])}{few}"
+                f"sample returned {got[i]:.9g}, pdf(x) is {p[i]:.9g} at x = {shorten(x[at[i]])}{_ratio(got[i], p[i])}{why}"
             ),
             len(at),
         )
@@ -252,6 +257,21 @@ def _with_usual_noise(slack: np.ndarray, value: np.ndarray) -> np.ndarray:
 
 def _quote(what: str, values: np.ndarray, rest: str) -> Callable[[int], str]:
     return lambda i: f"{what} {values[i]:.9g} {rest}"
+
+
+def _relation(got: np.ndarray, right: np.ndarray) -> str:
+    """Return in words what all returned densities have to do with those that are claimed, if it is plain."""
+    if len(got) < _ENOUGH:
+        return ""
+    with np.errstate(all="ignore"):
+        others = {"its logarithm is returned": np.log(right), "one over it is returned": 1 / right}
+        ratio = float(np.median(got / right))
+        if np.isfinite(ratio) and ratio > 0:
+            others[f"{ratio:.6g} times it is returned"] = ratio * right
+        found = [
+            words for words, value in others.items() if np.all(np.abs(got - value) <= 1e-5 * np.abs(value) + 1e-12)
+        ]
+    return f"; everywhere {found[0]}" if found else ""
 
 
 def _ratio(got: float, right: float) -> str:

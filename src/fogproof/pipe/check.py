@@ -17,7 +17,7 @@ from fogproof.checks.digits import digits_of
 from fogproof.checks.subject import Precision, Subject
 from fogproof.errors import InvalidInputError, NotInstalledError, SubjectError
 from fogproof.pipe.estimator import PipeEstimator, draws_of
-from fogproof.pipe.faults import ProgramError
+from fogproof.pipe.faults import BROKEN, ProgramError
 from fogproof.pipe.files import read_rows
 from fogproof.pipe.process import Timeouts
 from fogproof.pipe.program import Program
@@ -75,6 +75,10 @@ def check_program(
             judge = partial(_family, table=table, origin=origin) if base.family else _single
             verdict = judge(program, base, settings)
             seeded = function_of_its_seed(program, base)
+        if (
+            program.ahead
+        ):  # it may have come too late to be seen between two questions, and stood for the answer to the next
+            raise ProgramError(f"the program {program.ahead}", BROKEN)
         if seeded is not None:
             cause = verdict.cause or seeded.cause
             verdict = replace(verdict, findings=(*verdict.findings, seeded), cause=cause)

@@ -70,7 +70,7 @@ class Process:
         self._ahead = b""
         self._said, self._last, self._said_bytes = b"", b"", 0
         self.note = ""
-        self._late = 0  # bytes that came after the end of the input
+        self._late, self.rest = 0, b""  # bytes that came after the end of the input; the first of what nobody asked for
         self._ended_itself = False
 
     def send(self, data: bytes | memoryview) -> None:
@@ -161,13 +161,14 @@ class Process:
                     if pipe == self._err:
                         self._listen()
                     elif pipe == self._out:
-                        self._late += len(self._read(_CHUNK))
+                        self._unread(self._read(_CHUNK))
         finally:
             code = self._popen.poll()
             self._child.kill()
         while self._out in self._open and (rest := self._read(_CHUNK)):
-            self._late += len(rest)
+            self._unread(rest)
         extra, self._ended_itself = len(self._ahead) + self._late, code is not None
+        self.rest = self._ahead + self.rest
         self._listen()
         for pipe in list(self._open):
             self._close(pipe)
@@ -177,6 +178,10 @@ class Process:
             self.note = f"it did not end within {self.timeouts.end:g} s of the end of its input, and was killed"
         elif code and before is None:
             self.note = f"it {end_of(code)} after the end of its input"
+
+    def _unread(self, data: bytes) -> None:
+        self._late += len(data)
+        self.rest += data[: max(_KEPT - len(self.rest), 0)]
 
     def _some(self, deadline: float, seconds: float, awaited: str, most: int) -> bytes:
         while True:

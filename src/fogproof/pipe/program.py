@@ -10,7 +10,7 @@ import numpy as np
 from fogproof.pipe.blocks import DTYPES, bytes_of, encoded, from_lines
 from fogproof.pipe.faults import BROKEN, ProgramError
 from fogproof.pipe.process import Process, Timeouts
-from fogproof.pipe.protocol import BrokenLineError, Greeting, read_greeting, request_line, require_answer
+from fogproof.pipe.protocol import AheadError, BrokenLineError, Greeting, read_greeting, request_line, require_answer
 
 
 class Program:
@@ -19,7 +19,8 @@ class Program:
     command   the command line, as a text that is split like a shell's, or as words; no shell is started
     timeouts  how long it may take
 
-    `notes` and `said` (to stderr) tell afterwards what it did besides; `shown` are points of its first large answer.
+    `notes` and `said` (to stderr) tell afterwards what it did besides, `ahead` that an answer was left which nobody had asked
+    for; `shown` are points of its first large answer.
     """
 
     def __init__(self, command: str | Sequence[str], timeouts: Timeouts | None = None) -> None:
@@ -27,7 +28,7 @@ class Program:
         self._process: Process | None = None
         self.notes: list[str] = []
         self.shown: np.ndarray | None = None
-        self.said = ""
+        self.said, self.ahead, self._waiting, self._before = "", "", False, 0
         self.greeting = self._start()
 
     def __enter__(self) -> Program:
@@ -53,6 +54,8 @@ class Program:
             self.stop()
             raise
         except BrokenLineError as broken:
+            if isinstance(broken, AheadError):
+                self.ahead = str(broken)
             raise self.refuse(str(broken), broken.cause) from None
         except BaseException:
             self.stop()
@@ -77,9 +80,10 @@ class Program:
                 else ""
             )
             raise BrokenLineError(f"wrote more than it was asked for: {_shown(extra)}{wide}")
+        self._waiting = True
         process.send(request_line(request, n, rows.shape[1], seed, parameters))
         process.send(encoded(rows, kind))
-        require_answer(process.line(seconds, f'the answer to "{request}" of {n} rows{_of(rows)}'), n)
+        require_answer(process.line(seconds, f'the answer to "{request}" of {n} rows{_of(rows)}'), n, self._before)
         if kind == "text":
             lines = process.lines(n, seconds, f'{n} rows of {columns} numbers for "{request}"')
             try:
@@ -97,6 +101,7 @@ class Program:
 
             process.fill(bytes_of(answer), seconds, told)
         process.answers += 1
+        self._waiting, self._before = False, n
         return answer
 
     def refuse(self, what: str, cause: str = BROKEN) -> ProgramError:
@@ -113,11 +118,13 @@ class Program:
             process, self._process = self._process, None
             process.stop()
             self.said = process.said
+            if not self._waiting and process.rest.startswith(b'{"n"'):
+                self.ahead = self.ahead or "answered once more than it was asked"
             if process.note:
                 self.notes.append(process.note)
 
     def _start(self) -> Greeting:
-        self._process = Process(self._command, self._timeouts)
+        self._process, self._waiting, self._before = Process(self._command, self._timeouts), False, 0
         try:
             return read_greeting(self._process.line(self._timeouts.start, "its greeting"))
         except BrokenLineError as broken:

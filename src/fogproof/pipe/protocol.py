@@ -27,6 +27,10 @@ class BrokenLineError(ValueError):
         self.cause = cause
 
 
+class AheadError(BrokenLineError):
+    """A line announces the answer to the question before, which has one already."""
+
+
 @dataclass(frozen=True)
 class Greeting:
     """The program's first line: how it writes numbers, what stands in its columns, and which other questions it answers.
@@ -87,8 +91,8 @@ def request_line(request: str, n: int, columns: int, seed: int, parameters: Mapp
     return json.dumps({**table, "parameters": dict(parameters)}).encode() + b"\n"
 
 
-def require_answer(line: bytes, n: int) -> None:
-    """Raise `BrokenLineError` unless a line announces n rows."""
+def require_answer(line: bytes, n: int, before: int = 0) -> None:
+    """Raise `BrokenLineError` unless a line announces n rows; the question before was for `before` rows."""
     table = _object(line, "the line before its rows", f'{{"n": {n}}}')
     if "error" in table:
         raise BrokenLineError(f"says: {one_line(str(table['error']))[:500]}", REFUSES)
@@ -96,7 +100,10 @@ def require_answer(line: bytes, n: int) -> None:
     if "fogproof" in table and got is None:
         raise BrokenLineError("greets again where an answer was due, as after a new start: it greets once")
     if isinstance(got, bool) or got != n:
-        raise BrokenLineError(f"announces {shorten(got)} rows where {n} were asked for")
+        told = f"announces {shorten(got)} rows where {n} were asked for"
+        if got == before:
+            raise AheadError(f"{told}, as many as before: it answers once too often, or always with so many")
+        raise BrokenLineError(told)
 
 
 def _object(line: bytes, what: str, example: str) -> dict[str, Any]:

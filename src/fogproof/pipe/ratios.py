@@ -22,6 +22,8 @@ from fogproof.pipe.recorded import LEAST
 _ROWS_A_PART = 5000  # fewer leave ratios too skewed for a test of their mean
 _PARTS = 64
 _FEW = 8  # points of the pilot in a cell: q leaves out emptier ones
+_SAME = 5.0  # standard errors within which all cells are off by the same factor
+_LOGARITHMS = 0.01  # of densities that are negative: what logarithms have
 _PILOT_A_CELL = 30  # points of the pilot that tell how much of q lies in a fine cell
 
 
@@ -66,6 +68,10 @@ def check_ratios(subject: Subject, draw: Draw, alpha: float, seed: int | None) -
         _promise("domain", outside, f"a point of {subject.domain}", draw.x, "outside the domain"),
         _promise("positive pdf", bad, "of positive finite density", draw.pdf, "claimed hole"),
     ]
+    negative = float(np.mean(draw.pdf < 0))
+    if negative > 0:
+        told = " (are they logarithms?)" if negative > _LOGARITHMS else ""
+        promises[1] = replace(promises[1], message=promises[1].message + told, cause="negative pdf")
     if any(finding.outcome == "rejected" for finding in promises):
         return _with(Verdict((), alpha, n, seed or 0), promises)
     cut = n // 4
@@ -90,7 +96,7 @@ def check_ratios(subject: Subject, draw: Draw, alpha: float, seed: int | None) -
     verdict = check_estimator(
         values, reference, nonnegative=True, tolerance=1e-12, precision=subject.precision, alpha=alpha, seed=seed
     )
-    return _with(_renamed(verdict), promises)
+    return _with(_scaled(_renamed(verdict), values, np.asarray(reference.value)), promises)
 
 
 def _promise(name: str, broken: np.ndarray, rule: str, shown: np.ndarray, cause: str) -> Finding:
@@ -103,14 +109,29 @@ def _promise(name: str, broken: np.ndarray, rule: str, shown: np.ndarray, cause:
 
 def _renamed(verdict: Verdict) -> Verdict:
     """Say what the channels are."""
-    findings = [
-        replace(f, check=f.check.replace("mean", "1/pdf").replace("channel", "cell"))
-        if f.check.startswith("mean")
-        else f
-        for f in verdict.findings
-    ]
+    findings = [_of_cells(f) if f.check.startswith("mean") else f for f in verdict.findings]
     cause = "wrong density or samples" if verdict.outcome == "rejected" else ""
     return replace(verdict, findings=tuple(findings), cause=cause)
+
+
+def _of_cells(finding: Finding) -> Finding:
+    def told(words: str) -> str:
+        return words.replace("mean of channel", "1/pdf of cell")
+
+    known = finding.resolution
+    resolution = None if known is None else replace(known, kind=told(known.kind))
+    return replace(finding, check=told(finding.check), message=told(finding.message), resolution=resolution)
+
+
+def _scaled(verdict: Verdict, values: np.ndarray, right: np.ndarray) -> Verdict:
+    """Name one factor on all densities, where every cell is off by it."""
+    if verdict.outcome != "rejected":
+        return verdict
+    mean, error = values.mean(axis=0) / right, values.std(axis=0) / math.sqrt(len(values)) / right
+    if abs(mean[-1] - 1) > _SAME * error[-1] and bool(np.all(np.abs(mean[:-1] - mean[-1]) <= _SAME * error[:-1])):
+        said = f"the densities are {1 / mean[-1]:.3g} times those of the samples, everywhere"
+        return replace(verdict, cause="normalisation", diagnosis=said)
+    return verdict
 
 
 def _with(verdict: Verdict, promises: list[Finding]) -> Verdict:

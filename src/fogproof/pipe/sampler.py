@@ -27,7 +27,9 @@ def draw_of(rows: np.ndarray, columns: tuple[str, ...], domain: Domain) -> Draw:
         places = [i for i, each in enumerate(columns) if each == name]
         return None if not places else rows[:, places[0]] if len(places) == 1 else rows[:, places]
 
-    x = rows[:, [i for i, each in enumerate(columns) if each == "x"]]
+    places = [i for i, each in enumerate(columns) if each == "x"]
+    together = places == list(range(places[0], places[-1] + 1))
+    x = rows[:, places[0] : places[-1] + 1] if together else rows[:, places]
     valid = column("valid")
     return Draw(
         x if domain.shape else x[:, 0],

@@ -51,14 +51,17 @@ def time_beyond(counts: np.ndarray, times: Sequence[Times], count: float) -> Tim
     a, b = _same_rounds(times[k - 1], times[k])
     last = times[k].estimate.value
     found, line = (b + (_share(counts, k, count, p) - 1) * (b - a) for p in (_power(counts, times, k), 1.0))
-    least, most = _interval(found)
-    least = max(least, last)
-    bend = _bend(Times(np.maximum(found, last)), Times(np.maximum(line, last)))
+    if np.any(b <= a):  # a round in which more samples took less time: noise is as large as what they take
+        least, most = _interval(found)
+        least, found, line = max(least, last), np.maximum(found, last), np.maximum(line, last)
+    else:
+        least, most = Times(found).estimate.low, Times(found).estimate.high
+    bend = _bend(Times(found), Times(line))
     if most > BLUR * least:
         return "the samples took too little time beside the call itself: add a larger count to `samples`"
     if max(bend) > math.log(BENT):
         return "the time does not grow like a fixed cost and so much a sample: add a larger count to `samples`"
-    return TimeAt(Times(np.maximum(found, last)), bend)
+    return TimeAt(Times(found), bend)
 
 
 def power_at(counts: np.ndarray, times: Sequence[Times], count: float) -> float:

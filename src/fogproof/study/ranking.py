@@ -76,6 +76,10 @@ def _sentences(scene: Sequence[Measured]) -> list[str]:
         said += _soonest([m for m in scene if m.unbiased], "Of the unbiased, ")
     said += _compared(scene)
     said += [_marched(m) for m in scene if m.cell.method.axis == "steps" and m.record["counts"]]
+    untimed = [_inside(m) for m in scene if m.reaches and m.reaches[_AT].untimed]
+    if untimed:
+        more = "what more samples would take these counts do not tell: add a larger one to `samples`"
+        said.append(f"Of {_listed(untimed)} {more}.")
     open_ = [_inside(m) for m in scene if m.status == "inconclusive" and m.cell.points == "random" and m not in biased]
     if open_:
         said.append(f"Not judged unbiased yet: {_listed(open_)}.")

@@ -54,6 +54,7 @@ class Reach:
     why      of what was not reached, in words
     samples  or steps; None if not reached
     times    of one estimate with so many; at the last count, where that does not reach it
+    untimed  whether so many samples are known to do, and their time alone is not known
     noise    how far the logarithm of the time reaches below and above because of the error's own interval
     """
 
@@ -63,6 +64,7 @@ class Reach:
     samples: float | None
     times: Times
     noise: tuple[float, float] = (0.0, 0.0)
+    untimed: bool = False
 
     @property
     def reached(self) -> bool:
@@ -154,7 +156,7 @@ def _by_the_law(curve: ErrorOverTime, law: Estimate, target: float, error: float
     beyond = needed > curve.counts[-1]
     at = (time_beyond if beyond else time_at)(curve.counts, curve.times, needed)
     if isinstance(at, str):
-        return Reach(error, "not-reached", at, None, curve.times[-1])
+        return Reach(error, "not-reached", at, None, curve.times[-1], untimed=True)
     unsure = 2 * hidden / target
     grows = power_at(curve.counts, curve.times, needed)
     below = grows * (math.log(law.value / law.low) + unsure) if law.low > 0 else math.inf
