@@ -1,9 +1,9 @@
 """`check_family`: is a sampler or an estimator right for every parameter, and which is the simplest it is wrong for?
 
-Hypothesis proposes parameters, simple and extreme ones first. All of them get a few samples; the quarter that looks most doubtful
-gets four times as many in the next round, and so on (successive halving; Karnin, Koren & Somekh 2013, who halve: quarters give
-every member as much in half the rounds). A rejection ends the search, and Hypothesis shrinks: it looks for the simplest parameter
-that is still rejected. Every check of the search has its own share of one false-alarm probability.
+Hypothesis proposes parameters, simple and extreme ones first. All of them get a few samples; the eighth that looks most doubtful
+gets eight times as many in the next round, and so on (successive halving; Karnin, Koren & Somekh 2013, who halve: eighths find as
+much, and give every member more in a third of the rounds). A rejection ends the search, and Hypothesis shrinks: it looks for the
+simplest parameter that is still rejected. Every check of the search has its own share of one false-alarm probability.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from fogproof.validate import number
 _SHRINKING = 200
 """Parameters that are tried to make a rejected one simpler."""
 
-_QUARTER = 4  # one of so many goes on to the next round
+_KEPT = 8  # one of so many goes on to the next round
 _ENOUGH = 1000  # samples of a member in a first round that another may follow
 _LEAST = 100  # samples of a member
 
@@ -94,9 +94,9 @@ def _rounds(members: int, samples: int, alpha: float) -> list[tuple[int, int, fl
 
     Half of alpha is for the rounds, half for shrinking.
     """
-    count = max(1, math.ceil(math.log(members, _QUARTER)))
+    count = max(1, math.ceil(math.log(members, _KEPT)))
     count = min(count, max(1, samples // (_ENOUGH * members)))
-    kept = [max(1, members // _QUARTER**r) for r in range(count)]
+    kept = [max(1, members // _KEPT**r) for r in range(count)]
     return [(k, samples // (count * k), alpha / (2 * count * k)) for k in kept]
 
 
