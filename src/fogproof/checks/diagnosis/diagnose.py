@@ -13,6 +13,7 @@ from fogproof.checks.diagnosis.contrast import Contrast, Fit, claimed
 from fogproof.checks.diagnosis.factors import named_factor
 from fogproof.checks.diagnosis.fitting import Explained, likeliest, sharpened
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting
+from fogproof.checks.diagnosis.points import single_points
 from fogproof.checks.statistics.repeats import KEPT
 from fogproof.checks.streams import batch_generator
 from fogproof.checks.subject import Subject
@@ -51,9 +52,12 @@ def diagnosed(subject: Subject, findings: Sequence[Finding], samples: int, seed:
     statistical = any(f.outcome == "rejected" and f.p_value is not None and f.cause in _STATISTICAL for f in findings)
     if cause == "negative pdf":
         return cause, _exponential(subject, samples, seed)
-    if cause in _CONSTANT | _STATISTICAL or (cause in _SYMPTOMS | _ZERO and statistical):
+    if cause in {"atom"} | _CONSTANT | _STATISTICAL or (cause in _SYMPTOMS | _ZERO and statistical):
         try:
             with np.errstate(all="ignore"):
+                named, words = ("", "") if cause in _CONSTANT else single_points(subject, samples, seed)
+                if named == "clamped" or cause == "atom":
+                    return named or cause, words
                 return _searched(subject, cause, findings, samples, seed)
         except (
             Exception

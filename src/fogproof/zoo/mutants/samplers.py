@@ -35,7 +35,16 @@ OTHER_LAW = (
     "wrong power",
     "few entries",
 )
-MISSING = ("skipped band", "skipped region", "missing tail", "never drawn", "few entries", "atom", "claimed hole")
+MISSING = (
+    "skipped band",
+    "skipped region",
+    "missing tail",
+    "never drawn",
+    "few entries",
+    "atom",
+    "clamped",
+    "claimed hole",
+)
 
 
 MUTATIONS: tuple[Mutation[SamplerCase], ...] = (

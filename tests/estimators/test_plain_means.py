@@ -1,0 +1,37 @@
+"""Estimators and densities whose value is one line: held to the oracle over even points, where no chance hides a factor."""
+
+import numpy as np
+import pytest
+
+from fogproof.analytic import emitted_radiance, phase_pdf
+from fogproof.estimators.free_paths.fog import UniformEmission
+from fogproof.estimators.phase.functions import phase_value
+from fogproof.scene import ExponentialMedium, HenyeyGreenstein, Isotropic, LinearMedium, Medium, Mixture, Ray
+
+
+class Even:
+    """A generator whose numbers are the middles of n equal parts: the mean over them is a midpoint rule."""
+
+    def random(self, n):
+        return (np.arange(n) + 0.5) / n
+
+
+@pytest.mark.parametrize(
+    "medium",
+    [
+        Medium(0.6, 0.2, emission=3.0),
+        LinearMedium(0.5, (0, 0, 0.4), albedo=0.3, emission=2.0),
+        ExponentialMedium(1.5, (0, 0, -0.7), albedo=0.3, emission=2.0),
+    ],
+    ids=lambda it: type(it).__name__,
+)
+def test_emission_at_even_places_is_the_oracles(medium):
+    ray = Ray((0, 0, 0), (0, 0, 1), 2.5)
+    found = UniformEmission(medium, ray).draw(Even(), 20_000)
+    assert found.value.mean() == pytest.approx(emitted_radiance(medium, ray).value, rel=1e-7)
+
+
+def test_a_density_of_weights_that_do_not_quite_sum_to_one():
+    mixed = Mixture((Isotropic(), HenyeyGreenstein(0.5)), (0.25, 0.75 + 8e-10))
+    mu = np.linspace(-1, 1, 9)
+    assert phase_value(mixed, mu) == pytest.approx(phase_pdf(mixed, mu).value, rel=1e-12)
