@@ -82,6 +82,19 @@ def test_what_is_returned_in_the_place_of_a_pdf_is_told(tmp_path, claimed, words
     assert f"everywhere {words}" in told
 
 
+@pytest.mark.parametrize("off", [1 + 1e-7, 1 + 1e-5])
+def test_a_pdf_that_is_hardly_off_is_no_function_of_itself(off):
+    verdict = fogproof.check_sampler(
+        lambda u: fogproof.Draw(u[:, 0], pdf=np.full(len(u), off)),
+        lambda x: np.ones(len(x)),
+        fogproof.Interval(0, 1),
+        dimensions=1,
+        samples=2000,
+    )
+    assert verdict.cause == "wrong pdf returned"
+    assert "everywhere" not in str(verdict)
+
+
 def test_densities_alone_may_be_off_by_a_factor_or_be_logarithms(tmp_path):
     """The density 1 + x / 2 on the unit interval, and nothing that says so."""
     x = np.random.default_rng(5).random(40_000)
@@ -107,6 +120,8 @@ def test_directions_of_few_digits_lie_beside_the_sphere(tmp_path):
     x /= np.linalg.norm(x, axis=1, keepdims=True)
     np.save(tmp_path / "x.npy", np.round(x, 3))
     assert check_file(tmp_path / "x.npy", ISOTROPIC).verdict.cause == "coarse numbers"
+    np.save(tmp_path / "x.npy", np.round(1.01 * x, 3))
+    assert check_file(tmp_path / "x.npy", ISOTROPIC).verdict.cause == "outside the domain"
     np.save(tmp_path / "x.npy", 1.001 * x)
     assert check_file(tmp_path / "x.npy", ISOTROPIC).verdict.cause == "outside the domain"
 

@@ -76,3 +76,16 @@ def test_a_time_between_two_counts_is_between_theirs():
 @pytest.mark.parametrize(("law", "power"), [(lambda n: 1e-6 * n, 1), (lambda n: 1e-9 * n**2, 2), (root, 0.5)])
 def test_the_power_with_which_a_time_grows(law, power):
     assert power_at(COUNTS, times(law), 3000) == pytest.approx(power, rel=0.03)
+
+
+def test_a_step_of_the_cache_is_no_power_that_goes_on():
+    """Three times as long a sample from 10 000 on, and no longer after that: the line is told, the power is inside the interval."""
+    counts = np.array([100, 1000, 10_000, 100_000])
+
+    def stepped(n):
+        return 5e-4 + 2.5e-8 * min(n, 10_000) + 7.5e-8 * max(n - 10_000, 0)
+
+    at = time_beyond(counts, times(stepped, counts), 2e6)
+    assert at.times.estimate.value == pytest.approx(stepped(2e6), rel=0.05)
+    assert at.bend[1] > math.log(2)
+    assert "does not grow" in time_beyond(counts, times(stepped, counts), 1e10)

@@ -70,8 +70,8 @@ def claimed(subject: Subject, chart: Chart, points: np.ndarray, samples: int, ro
     rounding = pdf_noise(subject, points) if subject.precision == "float32" else 0.0
     ranges = _ranges(chart, leaves, grid, density)
     floor = (FLOOR[subject.precision] + rounding) * _height(subject, leaves.total, points)
-    doubt = _doubt(leaves, floor, lambda: second_view(chart, density, pilot, work))
-    doubt = doubt or _within_rounding(subject, chart, floor)
+    doubt = _within_rounding(subject, chart, floor)
+    doubt = doubt or _doubt(leaves, floor, lambda: second_view(chart, density, pilot, work))
     doubt = doubt or _strange(subject, chart, density, leaves, work, points)
     return Claim(chart, density, work, rounding, leaves, grid, ranges, doubt)
 

@@ -41,6 +41,10 @@ _TELLING = {
 """Words of an example that say more than the name of the promise."""
 
 _ENOUGH = 16  # densities that tell how they are wrong
+_ROUNDED = (
+    1 / 128
+)  # of a step: domains forgive the length of a vector 512 times its slack, and a rounded one is off by 4 steps
+_VARIES = 1e-3  # relative: what is plainly no rounding
 _USUAL = 4.0  # times the median: noise has tails
 
 
@@ -239,7 +243,7 @@ def _few_digits(subject: Subject, x: np.ndarray) -> str:
     digits = digits_of(x) if x.ndim > 1 and len(x) else None
     if digits is None:
         return ""
-    slack = 4 * (digits.relative + digits.absolute)
+    slack = _ROUNDED * (digits.relative + digits.absolute)
     return f"; {digits.words}" if bool(np.all(subject.domain.contains(x, slack))) else ""
 
 
@@ -264,9 +268,11 @@ def _relation(got: np.ndarray, right: np.ndarray) -> str:
     if len(got) < _ENOUGH:
         return ""
     with np.errstate(all="ignore"):
-        others = {"its logarithm is returned": np.log(right), "one over it is returned": 1 / right}
+        others = {}
+        if np.ptp(right) > _VARIES * np.max(np.abs(right)):  # a constant is the same as many a function of it
+            others = {"its logarithm is returned": np.log(right), "one over it is returned": 1 / right}
         ratio = float(np.median(got / right))
-        if np.isfinite(ratio) and ratio > 0:
+        if np.isfinite(ratio) and ratio > 0 and abs(ratio - 1) > _VARIES:
             others[f"{ratio:.6g} times it is returned"] = ratio * right
         found = [
             words for words, value in others.items() if np.all(np.abs(got - value) <= 1e-5 * np.abs(value) + 1e-12)

@@ -2,7 +2,8 @@
 
 A call costs something once and so much a sample. Where three counts show that it does not, a power of the count takes the place of
 the count itself, and what a line would say stays inside the interval. Beyond the last count a time that is not known to a factor
-`BLUR` is none, nor one of which a line would say something else by more than `BENT`.
+`BLUR` is none, nor one of which line and power say something else by more than that. There a slight bend, such as that of a cache
+that is full, is taken for passing: the line is told, and what the power would say stays inside the interval.
 """
 
 from __future__ import annotations
@@ -17,7 +18,8 @@ from fogproof.study.convergence import CONFIDENCE
 from fogproof.study.speed import Times
 
 BLUR = 10.0
-BENT = 3.0
+_SLIGHT = (0.75, 1.6)
+"""Powers that are taken for a line with a step in it."""
 _POWERS = (0.1, 6.0)
 """Between which powers of the count a time may grow."""
 
@@ -50,16 +52,19 @@ def time_beyond(counts: np.ndarray, times: Sequence[Times], count: float) -> Tim
     k = len(counts) - 1
     a, b = _same_rounds(times[k - 1], times[k])
     last = times[k].estimate.value
-    found, line = (b + (_share(counts, k, count, p) - 1) * (b - a) for p in (_power(counts, times, k), 1.0))
+    power = _power(counts, times, k)
+    found, other = (b + (_share(counts, k, count, p) - 1) * (b - a) for p in (power, 1.0))
+    if _SLIGHT[0] < power < _SLIGHT[1]:
+        found, other = other, found
     if np.any(b <= a):  # a round in which more samples took less time: noise is as large as what they take
         least, most = _interval(found)
-        least, found, line = max(least, last), np.maximum(found, last), np.maximum(line, last)
+        least, found, other = max(least, last), np.maximum(found, last), np.maximum(other, last)
     else:
         least, most = Times(found).estimate.low, Times(found).estimate.high
-    bend = _bend(Times(found), Times(line))
+    bend = _bend(Times(found), Times(other))
     if most > BLUR * least:
         return "the samples took too little time beside the call itself: add a larger count to `samples`"
-    if max(bend) > math.log(BENT):
+    if max(bend) > math.log(BLUR):
         return "the time does not grow like a fixed cost and so much a sample: add a larger count to `samples`"
     return TimeAt(Times(found), bend)
 
@@ -120,8 +125,8 @@ def _within(times: Times, low: float, high: float) -> Times:
     return Times(times.seconds * (min(max(value, low), high) / value))
 
 
-def _bend(found: Times, line: Times) -> tuple[float, float]:
-    off = math.log(line.estimate.value / found.estimate.value)
+def _bend(found: Times, other: Times) -> tuple[float, float]:
+    off = math.log(other.estimate.value / found.estimate.value)
     return max(-off, 0.0), max(off, 0.0)
 
 
