@@ -132,6 +132,18 @@ def half_space_spherical_albedo(albedo: FloatArray, phase: PhaseFunctionField | 
     if not is_isotropic(phase):
         return _doubled(c, None, phase)
     flat, absorbed = np.maximum(c.ravel(), FAINT)[:, None], 1 - c.ravel()[:, None]
+    parts = [_bimoment(flat[i : i + _ROWS], absorbed[i : i + _ROWS]) for i in range(0, max(len(flat), 1), _ROWS)]
+    value = np.concatenate(parts)
+    value = np.where(absorbed[:, 0] == 0, 1.0, value).reshape(c.shape) * (c / np.maximum(c, FAINT))
+    return Reference(value, 32 * EPS * value + TINY, METHOD, SOURCE)
+
+
+_ROWS = 1024
+"""Albedos whose integrands are in memory at the same time."""
+
+
+def _bimoment(flat: np.ndarray, absorbed: np.ndarray) -> np.ndarray:
+    """Return the spherical albedo over the albedo itself, (v, 1) each -> (v,); 1 is put where nothing is absorbed."""
     with np.errstate(all="ignore"):
         z = one_minus_theta_cot(angle(_S))
         x = flat / absorbed * z
@@ -141,8 +153,7 @@ def half_space_spherical_albedo(albedo: FloatArray, phase: PhaseFunctionField | 
         for n in range(27, -1, -1):  # (x - ln(1 + x))/x^2 = 1/2 - x/3 + …
             series = 1 / (n + 2) - small * series
         value = 4 / np.pi * _STEP * np.sum(np.where(x < 0.25, z * x * series, far) * np.exp(-_S), axis=-1)
-    value = np.where(absorbed[:, 0] == 0, 1.0, value).reshape(c.shape) * (c / np.maximum(c, FAINT))
-    return Reference(value, 32 * EPS * value + TINY, METHOD, SOURCE)
+    return np.asarray(value)
 
 
 @quantity(
