@@ -22,6 +22,9 @@ from fogproof.scene.grounds import Ground
 from fogproof.scene.kinds import given
 from fogproof.scene.phase import PhaseFunction
 
+_TOGETHER = 256
+"""Cosines of beams that one solution is asked for: a few hundred megabytes."""
+
 
 class LayerMedium(NamedTuple):
     """A layer that is neither empty nor endless: albedo, optical thickness, phase function, its moments, L_e [W/(m^2 sr)]."""
@@ -79,6 +82,9 @@ class Stacked(NamedTuple):
 
 def fluxes(layers: list[LayerMedium], below: Below, mu0: np.ndarray, n: int) -> Fluxes:
     """Return what becomes of beams of cosines mu0 (v,) by n nodes."""
+    if (low := _lower_half(mu0)) is not None:
+        parts = [fluxes(layers, below, mu0[here], n) for here in (low, ~low)]
+        return Fluxes(*(_merged(low, *found) for found in zip(*parts, strict=True)))
     slabs = _scaled(layers, n)
     cosines, where = np.unique(seen_at(mu0, _thinnest(slabs)), return_inverse=True)
     nodes = _nodes(slabs, below, cosines, n)
@@ -110,6 +116,9 @@ def more_than_once(
     layers: list[LayerMedium], below: Below, beams: Beams, side: Side, n: int, first: np.ndarray
 ) -> np.ndarray:
     """Return radiance per irradiance [1/sr] after two scatterings or reflections and more (v,); `first` is that after one."""
+    if (low := _lower_half(beams.mu0, beams.mu)) is not None:
+        halves = [(Beams(*(x[here] for x in beams)), first[here]) for here in (low, ~low)]
+        return _merged(low, *(more_than_once(layers, below, some, side, n, its_first) for some, its_first in halves))
     slabs = _scaled(layers, n)
     cosines, where = np.unique(
         seen_at(np.concatenate([beams.mu0, beams.mu]), _thinnest(slabs), 1e-13), return_inverse=True
@@ -125,6 +134,25 @@ def more_than_once(
         if np.all(np.abs(part[-1]) <= SEEN * (np.abs(total) + np.pi * first)):
             break
     return total / np.pi
+
+
+def _lower_half(*cosines: np.ndarray) -> np.ndarray | None:
+    """Return which beams lie in the lower half of the cosines that differ most often, None if all are few enough together.
+
+    Matrices between all directions grow with the square of their number; beams know nothing of each other.
+    """
+    each = [np.unique(found) for found in cosines]
+    if sum(map(len, each)) <= _TOGETHER:
+        return None
+    most = int(np.argmax([len(found) for found in each]))
+    return np.asarray(cosines[most] < each[most][len(each[most]) // 2])
+
+
+def _merged(low: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
+    """Return what was found of both halves in one array (v,)."""
+    found = np.empty(low.shape)
+    found[low], found[~low] = lower, upper
+    return found
 
 
 def _kernel(

@@ -6,6 +6,7 @@ the atmosphere: its Y is 1. `colour.XYZ_to_xy` and `colour.XYZ_to_sRGB` take it 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 from typing import Any
 
@@ -20,6 +21,9 @@ from fogproof.validate import as_float_array, require
 
 WAVELENGTHS = np.arange(360, 781) * 1e-9
 """Where the spectra are taken [m]."""
+
+_BLOCK = 4096
+"""Spectra in memory at the same time."""
 
 SOURCE = "CIE 015:2018, tristimulus values, by colour-science; spectra: Bodhaine et al. 1999"
 
@@ -40,8 +44,11 @@ def sun_colour(air_mass: FloatArray) -> Reference:
     """
     air_mass = as_float_array("air_mass", air_mass)
     require("air_mass", air_mass, np.isfinite(air_mass) & (air_mass >= 0), "must be finite and >= 0")
-    tau = air_optical_depth(WAVELENGTHS).value
-    path = air_mass[..., None] * tau
+    return _in_blocks(_sun, air_mass)
+
+
+def _sun(air_mass: np.ndarray) -> Reference:
+    path = air_mass[..., None] * air_optical_depth(WAVELENGTHS).value
     return _tristimulus(np.exp(-path), 60 * np.max(path, axis=-1), "Beer's law")
 
 
@@ -59,7 +66,10 @@ def sky_colour(mu_sun: FloatArray, mu_view: FloatArray, azimuth: FloatArray) -> 
     The sun's spectrum is the daylight illuminant D65. Error: rounding, 1e-13 relative or so.
     """
     named = {"mu_sun": mu_sun, "mu_view": mu_view, "azimuth": azimuth}
-    mu_sun, mu_view, azimuth = np.broadcast_arrays(*(as_float_array(*item) for item in named.items()))
+    return _in_blocks(_sky, *(as_float_array(*item) for item in named.items()))
+
+
+def _sky(mu_sun: np.ndarray, mu_view: np.ndarray, azimuth: np.ndarray) -> Reference:
     sky = plane_parallel_sky(
         air_optical_depth(WAVELENGTHS).value, mu_sun[..., None], mu_view[..., None], azimuth[..., None]
     )
@@ -68,6 +78,16 @@ def sky_colour(mu_sun: FloatArray, mu_view: FloatArray, azimuth: FloatArray) -> 
     inherited = _tristimulus(sky.error, np.zeros(slack.shape), "")
     found = _tristimulus(sky.value, slack, "single scattering, plane-parallel")
     return Reference(found.value, found.error + inherited.value, found.method, found.source)
+
+
+def _in_blocks(found: Callable[..., Reference], *points: np.ndarray) -> Reference:
+    """Return what is found at points that broadcast, (...) -> (..., 3); a spectrum of each takes kilobytes, so some at a time."""
+    wide = np.broadcast_arrays(*points)
+    flat = [array.reshape(-1) for array in wide]
+    blocks = [found(*(array[i : i + _BLOCK] for array in flat)) for i in range(0, max(flat[0].size, 1), _BLOCK)]
+    value, error = (np.concatenate([getattr(block, name) for block in blocks]) for name in ("value", "error"))
+    shape = (*wide[0].shape, 3)
+    return Reference(value.reshape(shape), error.reshape(shape), blocks[0].method, blocks[0].source)
 
 
 def _tristimulus(spectrum: np.ndarray, eps: np.ndarray, method: str) -> Reference:

@@ -14,7 +14,9 @@ from fogproof.analytic import (
     slab_reflectance,
     slab_transmittance,
 )
+from fogproof.analytic.multiple import layer_stacks
 from fogproof.errors import InvalidValueError
+from fogproof.oracle import answer
 from fogproof.scene import (
     HenyeyGreenstein,
     Isotropic,
@@ -175,3 +177,22 @@ def test_bad_values_are_named(make, argument):
     with pytest.raises(InvalidValueError) as raised:
         make()
     assert raised.value.argument == argument
+
+
+def test_many_directions_are_solved_some_at_a_time(monkeypatch):
+    layers = [{"tau": 0.5, "albedo": 0.9, "phase": {"kind": "henyey-greenstein", "g": 0.5}}, {"tau": 1, "albedo": 0.7}]
+    asked = {
+        "layers": layers,
+        "mu0": [[0.2], [0.9], [0.4]],
+        "mu": [0.1, 0.9, 0.3, 0.1, 1.0],
+        "azimuth": [0, 1, 2, 3, 0],
+    }
+    flux = {"layers": layers, "mu0": [0.3, 0.1, 0.9, 0.3, 1.0]}
+    requests = [{"quantity": "layered_brdf", **asked}, {"quantity": "layered_reflectance", **flux}]
+    whole = [answer(request) for request in requests]
+    monkeypatch.setattr(layer_stacks, "_TOGETHER", 3)
+    for request, together in zip(requests, whole, strict=True):
+        apart = answer(request)
+        assert apart["value"].shape == together["value"].shape
+        assert np.all(np.abs(apart["value"] - together["value"]) <= apart["error"] + together["error"])
+        assert np.all(apart["value"] != 0)
