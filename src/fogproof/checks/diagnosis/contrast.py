@@ -120,7 +120,9 @@ class Contrast:
         n = len(self.x)
         ratio = np.where((s > 0) & np.isfinite(s), s, 0.0) / self.q  # a mixture of less than nothing gains nothing
         few = ratio[np.r_[0:n:_THIN, n : len(ratio) : _THIN]]
-        usual = -float(np.log(np.median(few[few > 0]))) if (few > 0).any() else 0.0  # Newton's method begins within reach
+        usual = (
+            -float(np.log(np.median(few[few > 0]))) if (few > 0).any() else 0.0
+        )  # Newton's method begins within reach
         start, settled = _best_constant(few, -(-n // _THIN), usual)
         log_c, _ = _best_constant(ratio, n, start if settled else usual)
         odds = np.exp(log_c) * ratio + _BACKGROUND
