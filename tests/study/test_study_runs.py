@@ -5,6 +5,7 @@ import random
 import signal
 import subprocess
 import sys
+import threading
 import time
 
 import numpy as np
@@ -134,6 +135,27 @@ def test_an_interrupt_keeps_what_is_under_way(tmp_path, undisturbed):
             done = len(store.done())
     assert done < len(batches)
     assert drawn(STUDY, tmp_path)["digest"] == undisturbed
+
+
+def test_a_batch_under_way_at_an_interrupt_is_kept(tmp_path):
+    """The first one waits for the interrupt, which comes when another is done: it is finished then, and stored."""
+    cells, batches = cells_of(STUDY), batches_of(cells_of(STUDY))
+    stopping, slow = threading.Event(), []
+
+    def draw(text, folder, batch, reference):
+        if not slow:
+            slow.append(batch.number)
+            assert stopping.wait(60)
+        return run_batch(text, folder, batch, reference)
+
+    def advance(*_):
+        stopping.set()
+        raise KeyboardInterrupt
+
+    with opened(tmp_path, STUDY) as store, open_workers("threads", 2) as pool:
+        with pytest.raises(KeyboardInterrupt):
+            draw_missing(STUDY, cells, batches, store, pool, advance, draw=draw)
+        assert slow[0] in store.done()
 
 
 KILLER = """
