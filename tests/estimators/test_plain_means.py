@@ -1,19 +1,33 @@
 """Estimators and densities whose value is one line: held to the oracle over even points, where no chance hides a factor."""
 
+from typing import get_args
+
 import numpy as np
 import pytest
 
-from fogproof.analytic import emitted_radiance, phase_pdf
+from fogproof.analytic import emitted_radiance, phase_pdf, single_scattering
+from fogproof.estimators.airlight.placing import Placing
+from fogproof.estimators.airlight.single_scattering import Airlight
 from fogproof.estimators.free_paths.fog import UniformEmission
 from fogproof.estimators.phase.functions import phase_value
-from fogproof.scene import ExponentialMedium, HenyeyGreenstein, Isotropic, LinearMedium, Medium, Mixture, Ray
+from fogproof.scene import (
+    ExponentialMedium,
+    HenyeyGreenstein,
+    Isotropic,
+    LinearMedium,
+    Medium,
+    Mixture,
+    PointLight,
+    Ray,
+)
 
 
 class Even:
     """A generator whose numbers are the middles of n equal parts: the mean over them is a midpoint rule."""
 
-    def random(self, n):
-        return (np.arange(n) + 0.5) / n
+    def random(self, shape):
+        n = np.atleast_1d(shape)[0]
+        return ((np.arange(n) + 0.5) / n).reshape(shape)
 
 
 @pytest.mark.parametrize(
@@ -35,3 +49,11 @@ def test_a_density_of_weights_that_do_not_quite_sum_to_one():
     mixed = Mixture((Isotropic(), HenyeyGreenstein(0.5)), (0.25, 0.75 + 8e-10))
     mu = np.linspace(-1, 1, 9)
     assert phase_value(mixed, mu) == pytest.approx(phase_pdf(mixed, mu).value, rel=1e-12)
+
+
+@pytest.mark.parametrize("placing", get_args(Placing))
+def test_airlight_at_even_places_is_the_oracles(placing):
+    """One place each: whatever law it has, and wherever the light is, the mean over its uniform is the integral."""
+    medium, ray, light = Medium(0.1, 0.4), Ray((0, 0, 0), (0, 0, 1), 2.5), PointLight((0.3, 0.2, 1.1), 3.0)
+    found = Airlight(medium, ray, light, placing=placing).draw(Even(), 20_000)
+    assert found.value.mean() == pytest.approx(single_scattering(medium, ray, light).value, rel=1e-3)
