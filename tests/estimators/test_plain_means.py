@@ -5,12 +5,16 @@ from typing import get_args
 import numpy as np
 import pytest
 
-from fogproof.analytic import emitted_radiance, phase_pdf, single_scattering
+from fogproof.analytic import emitted_radiance, phase_pdf, single_scattering, transmittance
 from fogproof.estimators.airlight.placing import Placing
 from fogproof.estimators.airlight.single_scattering import Airlight
 from fogproof.estimators.free_paths.fog import UniformEmission
+from fogproof.estimators.phase.directions import Directions
 from fogproof.estimators.phase.functions import phase_value
+from fogproof.estimators.tracking.ratio import ResidualRatioTransmittance
 from fogproof.scene import (
+    CornetteShanks,
+    Draine,
     ExponentialMedium,
     HenyeyGreenstein,
     Isotropic,
@@ -19,6 +23,8 @@ from fogproof.scene import (
     Mixture,
     PointLight,
     Ray,
+    Rayleigh,
+    Schlick,
 )
 
 
@@ -57,3 +63,30 @@ def test_airlight_at_even_places_is_the_oracles(placing):
     medium, ray, light = Medium(0.1, 0.4), Ray((0, 0, 0), (0, 0, 1), 2.5), PointLight((0.3, 0.2, 1.1), 3.0)
     found = Airlight(medium, ray, light, placing=placing).draw(Even(), 20_000)
     assert found.value.mean() == pytest.approx(single_scattering(medium, ray, light).value, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    "phase",
+    [
+        HenyeyGreenstein(0.7),
+        HenyeyGreenstein(-0.3),
+        Rayleigh(),
+        Schlick(0.5),
+        Draine(0.6, 2.0),
+        CornetteShanks(0.4),
+        Isotropic(),
+    ],
+    ids=str,
+)
+def test_the_density_that_comes_with_a_direction_is_the_oracles(phase):
+    draw = Directions(phase).sample(np.random.default_rng().random((1000, 2)))
+    assert draw.pdf == pytest.approx(phase_pdf(phase, draw.x[:, 2]).value, rel=1e-9)
+
+
+@pytest.mark.parametrize("control", [0.0, 0.3, 0.6])
+def test_residual_ratio_tracking_has_the_oracles_mean_for_any_control(control):
+    medium, ray = LinearMedium(0.5, (0, 0, 0.4)), Ray((0, 0, 0), (0, 0, 1), 2.0)
+    found = ResidualRatioTransmittance(medium, ray, 1.5, control).draw(np.random.default_rng(), 40_000).value
+    truth = transmittance(medium, ray).value
+    assert abs(found.mean() - truth) < 6 * found.std() / 200
+    assert found.std() < 0.5 * truth
