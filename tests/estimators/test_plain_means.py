@@ -5,7 +5,7 @@ from typing import get_args
 import numpy as np
 import pytest
 
-from fogproof.analytic import emitted_radiance, phase_pdf, single_scattering, transmittance
+from fogproof.analytic import emitted_radiance, phase_pdf, single_scattering, transmittance, transmittance_variance
 from fogproof.estimators.airlight.placing import Placing
 from fogproof.estimators.airlight.single_scattering import Airlight
 from fogproof.estimators.free_paths.fog import UniformEmission
@@ -89,4 +89,6 @@ def test_residual_ratio_tracking_has_the_oracles_mean_for_any_control(control):
     found = ResidualRatioTransmittance(medium, ray, 1.5, control).draw(np.random.default_rng(), 40_000).value
     truth = transmittance(medium, ray).value
     assert abs(found.mean() - truth) < 6 * found.std() / 200
-    assert found.std() < 0.5 * truth
+    variance = transmittance_variance(medium, ray, "residual-ratio", 1.5 - control, control).value
+    spread = np.std((found - found.mean()) ** 2) / 200
+    assert abs(found.var() - variance) < 7 * spread

@@ -120,6 +120,20 @@ def test_a_damaged_store_is_put_aside_and_salvaged(tmp_path, undisturbed, damage
     assert drawn(STUDY, tmp_path)["digest"] == undisturbed
 
 
+@pytest.mark.parametrize("word", [b"batches", b"stretches", b"sessions", b"CREATE", b"TABLE"])
+def test_a_schema_whose_words_are_no_text_is_damage(tmp_path, word):
+    """SQLite's own error quotes them then, and cannot be read either."""
+    drawn(STUDY, tmp_path)
+    path = tmp_path / FILE
+    data = path.read_bytes()
+    assert word in data
+    path.write_bytes(data.replace(word, word[:2] + bytes([0xF4]) + word[3:]))
+    with pytest.raises(StoreError, match=r"(?s)is damaged.*--salvage"), opened(tmp_path, STUDY):
+        pass
+    with opened(tmp_path, STUDY, salvage=True) as store:
+        assert not set(store.done()) - set(range(10_000))
+
+
 def test_salvaging_finds_most_of_a_torn_file(tmp_path):
     drawn(STUDY, tmp_path)
     torn(tmp_path / FILE)

@@ -21,6 +21,7 @@ from fogproof.study.identity import identity_of
 from fogproof.study.plan import batches_of
 from fogproof.study.store_faults import (
     APPLICATION,
+    FAULTS,
     VERSION,
     DamagedError,
     StoreError,
@@ -103,7 +104,7 @@ def _open(path: Path, study: Study) -> Store:
     except BaseException as error:
         if connection is not None:
             connection.close()
-        if isinstance(error, sqlite3.Error):
+        if isinstance(error, FAULTS):
             raise explained(path, error) from None
         raise
 

@@ -70,8 +70,14 @@ def damaged(path: Path, reason: str) -> DamagedError:
     return DamagedError(f"{path} is damaged: {reason}; {fix}", str(path))
 
 
-def explained(path: Path, error: sqlite3.Error) -> StoreError:
+FAULTS = (sqlite3.Error, UnicodeDecodeError)
+"""What reading a file by SQLite may raise: the words of an error about a damaged schema may be no text themselves."""
+
+
+def explained(path: Path, error: sqlite3.Error | UnicodeDecodeError) -> StoreError:
     """Say what an error of SQLite means for the run."""
+    if isinstance(error, UnicodeDecodeError) or "decode to UTF-8" in str(error):
+        return damaged(path, "a name in its schema is no text")
     text, code = str(error), getattr(error, "sqlite_errorcode", 0) & 0xFF
     kept = "what is there is kept"
     match code:

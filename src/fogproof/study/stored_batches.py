@@ -20,7 +20,7 @@ import numpy as np
 from fogproof.study.batches import COLUMNS, BatchResult
 from fogproof.study.files import Study
 from fogproof.study.plan import Batches, BatchStretch
-from fogproof.study.store_faults import changed, damaged, explained, gone
+from fogproof.study.store_faults import FAULTS, changed, damaged, explained, gone
 
 _COLUMNS = "id, moments, tail, cost, wall, cpu, sum"
 _ROOM = 1 << 40
@@ -104,7 +104,7 @@ class Store:
 
     def close(self) -> None:
         """Close the file, and let others work on it."""
-        with contextlib.suppress(sqlite3.Error):
+        with contextlib.suppress(*FAULTS):
             self._connection.close()
 
     def take_up(self, study: Study) -> None:
@@ -141,13 +141,13 @@ class Store:
         """
         places = {identity: place for place, identity in enumerate(self._identities)}
         places_of = dict(enumerate(range(len(places))))
-        with contextlib.suppress(sqlite3.Error):
+        with contextlib.suppress(*FAULTS):
             for *row, stored in old.execute("select id, identity, replicates, sum from stretches"):
                 if _sum(*row) == stored and row[1] in places:
                     places_of[row[0]] = places[row[1]]
         seen: set[int] = set()
         for order in ("asc", "desc"):
-            with contextlib.suppress(sqlite3.Error):
+            with contextlib.suppress(*FAULTS):
                 for row in old.execute(f"select {_COLUMNS} from batches order by id {order}"):
                     if row[0] in seen:
                         break  # the damage has been met from the other side, or leads in a circle
@@ -213,7 +213,7 @@ class Store:
     def _faults_in_words(self) -> Iterator[None]:
         try:
             yield
-        except sqlite3.Error as error:
+        except FAULTS as error:
             raise explained(self.path, error) from None
 
 
