@@ -13,13 +13,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fogproof.checks import Finding, Verdict, check_estimator
+from fogproof.checks.declared import unchecked
 from fogproof.checks.subject import Subject, in_domain
 from fogproof.contracts import Draw, Reference
 from fogproof.domains import Domain, Law
 from fogproof.errors import SubjectError
+from fogproof.pipe.declared_means import declared_means
 from fogproof.pipe.recorded import LEAST
 
-_ROWS_A_PART = 5000  # fewer leave ratios too skewed for a test of their mean
+_ROWS_A_PART = 8000  # fewer leave ratios too skewed for a test of their mean
 _PARTS = 64
 _FEW = 8  # points of the pilot in a cell: q leaves out emptier ones
 _SAME = 5.0  # standard errors within which all cells are off by the same factor
@@ -94,9 +96,14 @@ def check_ratios(subject: Subject, draw: Draw, alpha: float, seed: int | None) -
     values[np.arange(len(tested)), part[fine]] = values[:, -1] = np.where(atom, 0.0, ratio)
     reference = Reference(np.append(np.bincount(part, share, parts), 1.0))
     verdict = check_estimator(
-        values, reference, nonnegative=True, tolerance=1e-12, precision=subject.precision, alpha=alpha, seed=seed
+        values, reference, nonnegative=True, tolerance=1e-12, precision=subject.precision, alpha=alpha / 2, seed=seed
     )
-    return _with(_scaled(_renamed(verdict), values, np.asarray(reference.value)), promises)
+    verdict = replace(_scaled(_renamed(verdict), values, np.asarray(reference.value)), alpha=alpha)
+    weights = 0 if draw.weight is None else int(np.prod(draw.weight.shape[1:], dtype=int))
+    return replace(
+        _with(verdict, [*promises, *declared_means(subject, draw, alpha / 2, seed)]),
+        unchecked=unchecked(subject, weights, draw.event is not None),
+    )
 
 
 def _promise(name: str, broken: np.ndarray, rule: str, shown: np.ndarray, cause: str) -> Finding:

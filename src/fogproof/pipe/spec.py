@@ -120,6 +120,9 @@ _TYPES: dict[str, Any] = {
     "samples": (int | None, None),
 }
 
+_OF_ESTIMATORS = ("error", "variance", "cost", "bounds", "nonnegative", "tails", "tolerance")
+_OF_SAMPLERS = ("atoms", "events", "axis", "mean_cosine", "albedo", "uniform_bits", "quasi_random", "table", "exact")
+
 
 def read_table(path: str | Path, what: str = "the spec file") -> dict[str, Any]:
     """Return the table of a TOML file."""
@@ -146,6 +149,7 @@ def spec_of(table: Mapping[str, Any], origin: str, parameters: Mapping[str, floa
     domain = _domain(_filled(table["domain"], values, origin), origin) if "domain" in table else None
     spec = Spec(domain=_implied(fields, domain, origin), folder=Path(origin).parent, family=family, **fields)
     _require_sense(spec, origin)
+    _require_use(spec, table, origin)
     return spec
 
 
@@ -183,6 +187,16 @@ def _require_sense(spec: Spec, origin: str) -> None:
     for label in spec.events:
         if not label.lstrip("-").isdigit():
             raise InvalidInputError(f"{origin}: events.{label} must be a whole number", f"events.{label}")
+
+
+def _require_use(spec: Spec, table: Mapping[str, Any], origin: str) -> None:
+    """Refuse what is given and would not be looked at."""
+    is_one, other = ("a sampler", "an estimator") if spec.samples_points else ("an estimator", "a sampler")
+    for key in table:
+        if key in (_OF_ESTIMATORS if spec.samples_points else _OF_SAMPLERS):
+            raise InvalidInputError(
+                f"{origin}: {key} says something of {other}, and this is {is_one}; leave it out", key
+            )
 
 
 def _filled(value: Any, values: Mapping[str, float], origin: str) -> Any:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 
@@ -52,15 +52,17 @@ def run_batch(text: str, folder: str, batch: Batch, reference: float) -> BatchRe
 def draw_batch(cell: Cell, batch: Batch, reference: float) -> BatchResult:
     """Draw a batch of a cell."""
     estimator = cell.estimator(batch.size)
+    rng = batch_generator(cell.study.seed, f"{cell.stream}/{batch.size}", batch.first, batch.start)
     wall, cpu = time.perf_counter(), time.thread_time()
     if cell.points == "sobol":
-        x, cost = _with_sobol_points(cell, estimator, batch)
+        drawn = _with_sobol_points(cell, estimator, batch)
     else:
-        rng = batch_generator(cell.study.seed, f"{cell.stream}/{batch.size}", batch.first, batch.start)
         # A call for each replicate, as a program makes it that wants one estimate: its fixed cost belongs to the estimate's time.
-        draws = [_numbers(estimator.draw(rng, batch.samples), batch.samples) for _ in range(batch.replicates)]
-        x, cost = np.concatenate([values for values, _ in draws]), float(np.mean([cost for _, cost in draws]))
+        drawn = [(estimator.draw(rng, batch.samples), batch.samples) for _ in range(batch.replicates)]
     cpu, wall = time.thread_time() - cpu, time.perf_counter() - wall
+    # What the study itself does with the numbers is none of the estimator's time.
+    numbers = [_numbers(draws, n) for draws, n in drawn]
+    x, cost = np.concatenate([values for values, _ in numbers]), float(np.mean([cost for _, cost in numbers]))
     x = x.reshape(batch.replicates, batch.samples)
     with np.errstate(over="ignore", invalid="ignore"):
         own = moments_of(x)
@@ -128,18 +130,16 @@ def _numbers(result: object, n: int) -> tuple[np.ndarray, float]:
     return x.reshape(n), cost
 
 
-def _with_sobol_points(cell: Cell, estimator: Estimator, batch: Batch) -> tuple[np.ndarray, float]:
-    """Draw each replicate with a scrambling of its own; a batch inside a replicate goes on in its sequence."""
+def _with_sobol_points(cell: Cell, estimator: Estimator, batch: Batch) -> list[tuple[Any, int]]:
+    """Draw each replicate with a scrambling of its own; a batch inside a replicate goes on in its sequence. Return calls' draws."""
     dimensions = cell.method.dimensions
     assert dimensions is not None
-    values, costs = [], []
+    drawn = []
     for replicate in range(batch.first, batch.first + batch.replicates):
         scrambling = batch_generator(cell.study.seed, f"{cell.stream}/{batch.size}", replicate, 0)
         behind = batch_generator(cell.study.seed, f"{cell.stream}/{batch.size}", replicate, 1 + batch.start)
         sequence = SobolSequence(dimensions, scrambling, behind, batch.start)
         for start in range(0, batch.samples, SOBOL_CALL):
             n = min(SOBOL_CALL, batch.samples - start)
-            x, cost = _numbers(estimator.draw(sequence.points(n), n), n)  # type: ignore[arg-type]
-            values.append(x)
-            costs.append(cost)
-    return np.concatenate(values), float(np.mean(costs))
+            drawn.append((estimator.draw(sequence.points(n), n), n))  # type: ignore[arg-type]
+    return drawn
