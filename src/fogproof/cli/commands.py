@@ -17,10 +17,9 @@ from typing import Any, TextIO
 import click
 
 from fogproof.cli.signals import code_of, stoppable
-from fogproof.cli.terminal import BAD_INPUT, UNREAD, code_of_stdout, say, silence, wait_for_streams
+from fogproof.cli.terminal import BAD_INPUT, FAULT, UNREAD, code_of_stdout, say, silence, wait_for_streams
 from fogproof.errors import FogproofError, stop_behind
 from fogproof.text import one_line
-from fogproof_command.startup import FAULT, end_of
 
 _COMMANDS = {
     "verify": "Check every sampler and estimator against its reference.",
@@ -136,6 +135,8 @@ def _of_the_system(error: OSError) -> str:
 
 
 def _fault(error: Exception) -> int:
+    from fogproof_command.startup import end_of  # an environment made before it was there works all the same
+
     explained, known = end_of(error)
     if known != FAULT:
         return _say(one_line(explained), known)

@@ -12,6 +12,8 @@ import click
 from fogproof.errors import InvalidInputError
 from fogproof.text import visible
 
+FAULT = 70
+"""Exit code after a fault of our own."""
 BAD_INPUT = 2
 """The exit code for usage, bad input, and no room, memory or permission."""
 
