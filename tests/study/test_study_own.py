@@ -156,5 +156,5 @@ def test_a_scene_has_a_name(tmp_path, name):
     (tmp_path / "study.toml").write_text(
         toml({"samples": [64], "scenes": [{**SCENE, "name": name, "estimators": ["analog"]}]})
     )
-    with pytest.raises(FogproofError, match="name must not be blank, got .* give the scene a name"):
+    with pytest.raises(FogproofError, match=r"name must not be blank, got .* give the scene a name"):
         read_study(tmp_path / "study.toml")
