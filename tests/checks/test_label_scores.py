@@ -23,7 +23,7 @@ def uniform_in_ball(x):
     return np.where(np.sum(x * x, axis=1) <= 1, 15 / (8 * np.pi**2), 0.0)
 
 
-@pytest.mark.parametrize("power", (5.0, 4.75))
+@pytest.mark.parametrize("power", [5.0, 4.75])
 def test_smooth_errors_in_five_dimensions_are_seen(power):
     """The law of the radius is off by Kolmogorov's .02; no cell has points enough to show it."""
     verdict = check_sampler(
