@@ -1,10 +1,10 @@
 """How much memory does each function of the oracle take for many numbers? It has to stay flat but for arguments and answers.
 
-    python tools/oracle_memory.py [--numbers 300000] [--seconds 10] [NAME ...]
+    python tools/oracle_memory.py [--numbers 300000] [--seconds 2] [NAME ...]
 
-Every array argument of every quantity's example is made long in turn, with values that all differ a little, to as many numbers as
-take `--seconds` at the rate of a small call. What NumPy takes at most beside arguments and answers is measured; above
-300 MiB the exit code is 1.
+Every array argument of every quantity's example is made long in turn, tenfold each time, until `--numbers` are reached or a call
+takes a tenth of `--seconds`. What NumPy takes at most beside arguments and answers is measured, and carried on by its last slope to
+what is asked within a minute. Above 300 MiB the exit code is 1.
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ from fogproof.scene.files import read_fields
 
 MIB = 2**20
 LIMIT = 300
-TIMED = 100
-"""Numbers of the small call, and the fewest of a measured one."""
-EACH = 6
-"""Copies of the answer, in memory, that are no working memory: of arguments, value, error, and what broadcasts them [of 8 bytes]."""
+FEWEST = 100
+COPIES = 6
+"""Arrays of the answer's size that are no working memory: arguments, value, error, and what broadcasts them."""
+MINUTE = 60
 
 LOBE = {"kind": "henyey-greenstein", "g": 0.5}
 
@@ -41,6 +41,17 @@ class Taken(NamedTuple):
     mebibytes: float
 
 
+def carried_on(call: Callable[[int], Any], most: int, seconds: float) -> tuple[Taken, float]:
+    """Return what the largest call took, and the MiB that as many as are answered within a minute would take."""
+    call(2)
+    before, last = Taken(0, 0.0, 0.0), measured(call, FEWEST)
+    while last.numbers < most and last.seconds < seconds / 10:
+        before, last = last, measured(call, min(most, 10 * last.numbers))
+    slope = (last.mebibytes - before.mebibytes) / (last.numbers - before.numbers)
+    more = min(most, last.numbers * MINUTE / max(last.seconds, 1e-9)) - last.numbers
+    return last, last.mebibytes + max(0.0, slope * more)
+
+
 def measured(function: Callable[[int], Any], numbers: int) -> Taken:
     """Measure one call."""
     tracemalloc.start()
@@ -50,7 +61,7 @@ def measured(function: Callable[[int], Any], numbers: int) -> Taken:
         seconds, peak = time.perf_counter() - start, tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()
-    return Taken(numbers, seconds, max(0.0, peak - 8 * EACH * np.size(found.value)) / MIB)
+    return Taken(numbers, seconds, max(0.0, peak - 8 * COPIES * np.size(found.value)) / MIB)
 
 
 def calls(quantity: Quantity) -> Iterator[tuple[str, Callable[[int], Any]]]:
@@ -104,23 +115,24 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("names", nargs="*", help="quantities; all of them unless given")
     parser.add_argument("--numbers", type=int, default=300_000)
-    parser.add_argument("--seconds", type=float, default=10)
+    parser.add_argument("--seconds", type=float, default=2)
     given = parser.parse_args()
     known = quantities()
     bad = []
-    print(f"{'quantity':36} {'numbers of':22} {'how many':>9} {'seconds':>8} {'MiB':>7}")
+    print(f"{'quantity':36} {'numbers of':22} {'how many':>9} {'seconds':>8} {'MiB':>7} {'would':>7}")
     for name in given.names or known:
         for path, call in calls(known[name]):
             try:
-                call(2)
-                few = measured(call, TIMED)
-                numbers = int(np.clip(TIMED * given.seconds / max(few.seconds, 1e-9), TIMED, given.numbers))
-                many = measured(call, numbers) if numbers > TIMED else few
+                last, would = carried_on(call, given.numbers, given.seconds)
             except Exception as error:
                 print(f"{name:36} {path:22} {type(error).__name__}: {error}", flush=True)
+                bad.append(f"{name} ({path})")
                 continue
-            print(f"{name:36} {path:22} {many.numbers:9d} {many.seconds:8.2f} {many.mebibytes:7.0f}", flush=True)
-            if many.mebibytes > LIMIT:
+            print(
+                f"{name:36} {path:22} {last.numbers:9d} {last.seconds:8.2f} {last.mebibytes:7.0f} {would:7.0f}",
+                flush=True,
+            )
+            if would > LIMIT:
                 bad.append(f"{name} ({path})")
     print(f"above {LIMIT} MiB: {', '.join(bad) or 'none'}")
     return int(bool(bad))
