@@ -23,6 +23,7 @@ _BLOCK = 1 << 13  # points at once: what is computed of them stays in the cache
 _MOST = 80  # functions: products of axes far from each other are left out beyond
 _TELLING = 400.0  # variance of a weighed sum whose law is the normal one
 _FAR = 1e-4  # p-values below it are corrected for skewness
+_EXPONENT = 600.0  # largest of that correction: no p-value that is not 0 needs more
 
 
 @dataclass(frozen=True)
@@ -84,13 +85,16 @@ def scores(name: str, total: np.ndarray, covariance: np.ndarray, doubt: float, a
     """Test weighed sums (q,) with their covariance (q, q); `doubt` is the variance of all residuals."""
     values, vectors = np.linalg.eigh(covariance)
     told = values >= _TELLING
-    if not told.any():
-        return Finding(name, "inconclusive", "too few coins are in doubt", alpha=alpha)
+    if not told.any():  # whether that leaves the verdict open, the sum of all residuals says
+        return Finding(
+            name, "not rejected", "too few coins are in doubt to be weighed: nothing was looked at", 1.0, alpha
+        )
     z = (vectors[:, told].T @ total) / np.sqrt(values[told])
     statistic, freedom = float(z @ z), int(told.sum())
     p = chi_square_above(freedom, statistic)
-    if p < _FAR:  # the skewness of a component is at most its largest term in standard deviations
-        p = min(_FAR, p * math.exp(min(statistic**1.5 / (6 * math.sqrt(float(values[told].min()))), 1.0)))
+    if p < _FAR:  # far out, a sum of bounded terms may decay as slowly as Bernstein's bound (1924)
+        heavier = math.sqrt(statistic / float(values[told].min())) / 3
+        p = min(_FAR, p * math.exp(min(0.5 * statistic * heavier / (1 + heavier), _EXPONENT)))
     rejected = p <= alpha
     seen = math.sqrt(chi_square_detected(freedom, alpha, MISS) / doubt)
     return Finding(
