@@ -96,18 +96,20 @@ def _long(quantity: Quantity, example: dict[str, Any], path: str, axes: int, num
         ray = arguments[outer]
         keys = {"origin": ray.origin, "direction": ray.direction, "length": ray.length}
         if inner == "direction":
-            turned = keys["direction"] + 0.1 * (nearby[:, None] - 1) * np.array([0.3, 0.2, 0.1])
-            keys[inner] = turned / np.linalg.norm(turned, axis=1, keepdims=True)
+            keys[inner] = _turned(keys[inner], nearby)
         elif inner == "origin":
             keys[inner] = keys[inner] + 0.01 * (nearby[:, None] - 1)
         else:
             keys[inner] = keys[inner] * nearby
         return {**arguments, outer: Ray(**keys)}
     value = arguments[outer]
-    if axes:
-        turned = value + 0.1 * (nearby[:, None] - 1) * np.array([0.3, 0.2, 0.1])
-        return {**arguments, outer: turned}
-    return {**arguments, outer: value * nearby}
+    return {**arguments, outer: _turned(value, nearby) if axes else value * nearby}
+
+
+def _turned(vector: np.ndarray, nearby: np.ndarray) -> np.ndarray:
+    """Return vectors (n, 3) near one, and of its length: directions stay directions."""
+    turned = vector + 0.1 * (nearby[:, None] - 1) * np.array([0.3, 0.2, 0.1])
+    return np.asarray(turned * (np.linalg.norm(vector) / np.linalg.norm(turned, axis=1, keepdims=True)))
 
 
 def main() -> int:

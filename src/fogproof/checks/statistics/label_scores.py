@@ -86,9 +86,8 @@ def scores(name: str, total: np.ndarray, covariance: np.ndarray, doubt: float, a
     values, vectors = np.linalg.eigh(covariance)
     told = values >= _TELLING
     if not told.any():  # whether that leaves the verdict open, the sum of all residuals says
-        return Finding(
-            name, "not rejected", "too few coins are in doubt to be weighed: nothing was looked at", 1.0, alpha
-        )
+        message = "too few coins are in doubt to be weighed: nothing was looked at"
+        return Finding(name, "not rejected", message, alpha=alpha)
     z = (vectors[:, told].T @ total) / np.sqrt(values[told])
     statistic, freedom = float(z @ z), int(told.sum())
     p = chi_square_above(freedom, statistic)
@@ -103,7 +102,7 @@ def scores(name: str, total: np.ndarray, covariance: np.ndarray, doubt: float, a
         f"chi-square = {statistic:.4g} on {freedom} smooth functions",
         p,
         alpha,
-        True,
+        p >= _FAR,
         statistic,
         math.sqrt(max(statistic - freedom, 0.0) / doubt),
         Resolution("smooth misfit (root mean square of the ratio of densities less 1)", seen * (1 + 0.5 * seen), MISS),
