@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from findings_of_phases import ahead_of_sggx, frame_of_sggx
-from findings_of_surfaces import centre, fiber, masking, spike_of_hair, underground, widened
+from findings_of_surfaces import centre, fiber, masking, rim_of_visible_normals, spike_of_hair, underground, widened
 from findings_of_volumes import missing_thickness
 
 from fogproof.adapters.mitsuba import load
@@ -92,6 +92,14 @@ FINDINGS = (
         centre,
         "0 / 0 in the polar coordinates of the concentric map's centre",
         "fogproof verify mitsuba/warp/uniform_square_concentric 'mitsuba/warp/beckmann/*'",
+    ),
+    Found(
+        "visible GGX normals are NaN at one point of the rim",
+        "MicrofacetDistribution with GGX and sample_visible gives NaN at u = (0, 1/2), whatever the incidence. The surfaces that"
+        " use it return a weight of 0 and a direction of NaN.",
+        rim_of_visible_normals,
+        "the point of the disk has z = 0, and the slope is divided by sin(theta) y + cos(theta) z = 0",
+        "python tools/findings.py",
     ),
     Found(
         "media are thinner far from the origin, and where they are small",

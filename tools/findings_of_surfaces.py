@@ -6,9 +6,9 @@ import mpmath
 import numpy as np
 from findings_of_phases import sphere, uniforms, vector
 
-from fogproof.adapters.mitsuba import MitsubaBSDF, MitsubaWarp
+from fogproof.adapters.mitsuba import MitsubaBSDF, MitsubaWarp, load
 from fogproof.catalogue.mitsuba.builders import direction
-from fogproof.domains import UnitHemisphere, UnitSphere, UnitSquare
+from fogproof.domains import UnitDisk, UnitHemisphere, UnitSphere, UnitSquare
 
 
 def spike_of_hair() -> str:
@@ -122,6 +122,41 @@ def underground() -> str:
             f" where {wrong} of 10^6 samples fall and eval is {np.max(bsdf.eval(below)):g}"
         )
     return f"Integral of pdf() by a product rule, at 50 degrees: {'; '.join(rows)}."
+
+
+def rim_of_visible_normals() -> str:
+    """Sample visible GGX normals at one point of the rim, and by the paper's formula in double precision."""
+    mi, rows = load(), []
+    microfacets = mi.MicrofacetDistribution(mi.MicrofacetType.GGX, 0.3, True)
+    for degrees in (10.0, 50.0, 80.0):
+        wi = direction(degrees, 25.0)
+        got, beside = (microfacets.sample(mi.Vector3f(wi), mi.Point2f(u, 0.5))[0] for u in (0.0, 1e-6))
+        got, beside = (np.array(normal, dtype=float).reshape(3) for normal in (got, beside))
+        rows.append(
+            f"{degrees:g} degrees: {vector(got, 4)} there, {vector(beside, 4)} at u = (1e-6, 1/2), the paper's"
+            f" {vector(visible_normal(np.array(wi), 0.3, (-1.0, 0.0)), 4)}"
+        )
+    warp = MitsubaWarp("square_to_uniform_disk_concentric", UnitDisk()).sample(np.array([[0.0, 0.5]]))[0]
+    bsdf = MitsubaBSDF({"type": "roughconductor", "distribution": "ggx", "alpha": 0.3}, direction(50.0, 25.0))
+    drawn = bsdf.sample(np.array([[0.5, 0.0, 0.5]], dtype=np.float32))
+    assert drawn.weight is not None
+    return (
+        f"The concentric map takes u = (0, 1/2) to {vector(warp)}. Normals from there, and those of Heitz (2018, listing 1),"
+        f" written anew in double precision: {'; '.join(rows)}. roughconductor then returns the direction {vector(drawn.x[0])}"
+        f" with the weight {drawn.weight[0, 0]:g}."
+    )
+
+
+def visible_normal(wi: np.ndarray, alpha: float, disk: tuple[float, float]) -> np.ndarray:
+    """Return the visible normal of Heitz (2018), "Sampling the GGX Distribution of Visible Normals", of a point of the disk."""
+    v = wi * (alpha, alpha, 1)
+    v /= np.linalg.norm(v)
+    across = np.array((v[1], -v[0], 0.0)) / np.hypot(v[0], v[1])  # either sign will do: this one is Mitsuba's
+    s = 0.5 * (1 + v[2])
+    x, y = disk[0], (1 - s) * np.sqrt(max(1 - disk[0] ** 2, 0.0)) + s * disk[1]
+    normal = x * across + y * np.cross(v, across) + np.sqrt(max(1 - x * x - y * y, 0.0)) * v
+    normal *= (alpha, alpha, 1)
+    return np.asarray(normal / np.linalg.norm(normal))
 
 
 def centre() -> str:

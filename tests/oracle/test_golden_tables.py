@@ -163,6 +163,22 @@ def test_what_the_command_refuses(arguments, words, capfd):
     assert words in capfd.readouterr().err
 
 
+def test_all_bad_requests_are_told_at_once(tmp_path, capfd):
+    requests, output = tmp_path / "requests.jsonl", tmp_path / "table.json"
+    good = {"quantity": "phase_pdf", "phase": {"kind": "rayleigh"}, "mu": 0}
+    lines = [json.dumps(good), json.dumps({**good, "mu": 2}), "", "null", '{"quantity": "luck"}', "{", *["5"] * 20]
+    requests.write_text("\n".join(lines))
+    with pytest.raises(SystemExit, match="2"):
+        main(["golden", "--requests", str(requests), "-o", str(output)])
+    told = capfd.readouterr().err.splitlines()
+    assert [int(line.partition(", line ")[2].partition(":")[0]) for line in told] == [2, 4, 5, 6, 7, 8, 9, 10, 11, 12]
+    for line, words in zip(
+        told, ("got 2.0", "got None", "'luck' is not known", "not valid JSON", "got 5"), strict=False
+    ):
+        assert words in line
+    assert not output.exists()
+
+
 def test_a_bad_request_is_named_with_its_line(tmp_path, capfd):
     requests = tmp_path / "requests.jsonl"
     requests.write_text('{"quantity": "air_cross_section", "wavelength": 5e-7}\n\n{"quantity": NaN}\n')

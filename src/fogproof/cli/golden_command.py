@@ -5,22 +5,23 @@ from __future__ import annotations
 import io
 import math
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import Any
 
 import click
 
+from fogproof.cli.answer_timeout import answer_timeout
 from fogproof.cli.terminal import requests_on_stdin
-from fogproof.cli.values import SECONDS_OR_NONE
-from fogproof.errors import FogproofError, InvalidInputError, TooLargeError
-from fogproof.golden import golden_entries, to_c, to_csv, to_json_document, to_npz
+from fogproof.errors import FogproofError, InvalidInputError, TooLargeError, shorten
+from fogproof.golden import Entry, golden_entries, to_c, to_csv, to_json_document, to_npz
 from fogproof.input_files import read_requests
 from fogproof.oracle.limits import Limits
 from fogproof.oracle.requests import read_request
 from fogproof.reports.files import write_output
 
 FORMATS: dict[str, Callable[..., str | bytes]] = {"json": to_json_document, "csv": to_csv, "c": to_c, "npz": to_npz}
+_TOLD = 10  # bad lines
 
 
 @click.command("golden")
@@ -29,13 +30,7 @@ FORMATS: dict[str, Callable[..., str | bytes]] = {"json": to_json_document, "csv
 @click.option(
     "--requests", metavar="FILE|-", help="Lines of JSON as for `fogproof oracle`: the questions to be answered."
 )
-@click.option(
-    "--timeout",
-    type=SECONDS_OR_NONE,
-    default=Limits.seconds,
-    show_default=True,
-    help="Seconds for one answer, 0 for no limit.",
-)
+@answer_timeout
 @click.option("-o", "--output", metavar="FILE", help="Where to write, stdout unless given.")
 def command(quantities: tuple[str, ...], kind: str, requests: str | None, timeout: float, output: str | None) -> int:
     """Write reference values with error bounds and conventions, for test suites that run without fogproof.
@@ -49,7 +44,8 @@ def command(quantities: tuple[str, ...], kind: str, requests: str | None, timeou
     if not quantities and requests is None:
         raise click.UsageError("name a QUANTITY (`fogproof oracle --list` has them), or give --requests FILE")
     limits = Limits(seconds=timeout or math.inf)
-    content = FORMATS[kind](golden_entries(quantities, None if requests is None else _read(requests), limits))
+    entries = golden_entries(quantities, limits=limits) if requests is None else _answered(requests, quantities, limits)
+    content = FORMATS[kind](entries)
     raw = content.encode("utf-8") if isinstance(content, str) else content
     if output is None:
         sys.stdout.buffer.write(raw)
@@ -59,23 +55,39 @@ def command(quantities: tuple[str, ...], kind: str, requests: str | None, timeou
     return 0
 
 
-def _read(path: str) -> list[dict[str, Any]]:
-    """Return the requests of a file of JSON lines; the first bad one is named, and nothing after it is waited for."""
-    lines = requests_on_stdin() if path == "-" else io.BytesIO(read_requests(path))
-    found = []
-    for number, line in enumerate(iter(partial(lines.readline, Limits.bytes + 1), b""), start=1):
+def _answered(path: str, quantities: Sequence[str], limits: Limits) -> list[Entry]:
+    """Return the answers to the requests of a file of JSON lines; all bad lines are told at once, of many the first ten."""
+    entries = golden_entries(quantities, [], limits)  # none; an unknown quantity is no fault of a line
+    bad: list[str] = []
+    for number, line in enumerate(_lines(path), start=1):
         try:
-            if len(line) > Limits.bytes:
-                raise TooLargeError(f"the line is longer than {Limits.bytes} bytes")
-            text = line.decode("utf-8-sig" if number == 1 else "utf-8")
-            if not text.strip():
-                continue
-            request = read_request(text)
-        except UnicodeDecodeError:
-            raise InvalidInputError(f"{path}, line {number}: it is not UTF-8 text", path) from None
+            request = _request(line, number == 1)
+            entries += [] if request is None else golden_entries(quantities, [request], limits)
         except FogproofError as error:
-            raise InvalidInputError(f"{path}, line {number}: {error}", path) from None
-        if not isinstance(request, dict):
-            raise InvalidInputError(f"{path}, line {number}: must be a JSON object", path)
-        found.append(request)
-    return found
+            bad.append(f"{path}, line {number}: {error}")
+            if len(bad) == _TOLD or len(line) > Limits.bytes:  # what follows would be the rest of the same line
+                break
+    if bad:
+        raise InvalidInputError("\n".join(bad), path)
+    return entries
+
+
+def _lines(path: str) -> Iterator[bytes]:
+    lines = requests_on_stdin() if path == "-" else io.BytesIO(read_requests(path))
+    return iter(partial(lines.readline, Limits.bytes + 1), b"")
+
+
+def _request(line: bytes, first: bool) -> dict[str, Any] | None:
+    """Return the request of a line, None if it is empty; the first may begin with a byte order mark."""
+    if len(line) > Limits.bytes:
+        raise TooLargeError(f"the line is longer than {Limits.bytes} bytes")
+    try:
+        text = line.decode("utf-8-sig" if first else "utf-8")
+    except UnicodeDecodeError:
+        raise InvalidInputError("it is not UTF-8 text") from None
+    if not text.strip():
+        return None
+    request = read_request(text)
+    if not isinstance(request, dict):
+        raise InvalidInputError(f"must be a JSON object, got {shorten(request)}")
+    return request

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import click
 
+from fogproof.cli.answer_timeout import answer_timeout
 from fogproof.cli.terminal import requests_on_stdin, say
-from fogproof.cli.values import SECONDS_OR_NONE
 from fogproof.input_files import read_requests
 from fogproof.oracle import Limits, schema, serve
 from fogproof.quantities import quantities
@@ -32,13 +32,7 @@ from fogproof.quantities import quantities
     "--rigorous", is_flag=True, help="Prove every answer by ball arithmetic (slow; needs the extra 'rigorous')."
 )
 @click.option("--max-values", default=Limits.values, show_default=True, help="Numbers in one answer, at most.")
-@click.option(
-    "--timeout",
-    type=SECONDS_OR_NONE,
-    default=Limits.seconds,
-    show_default=True,
-    help="Seconds for one answer, 0 for no limit.",
-)
+@answer_timeout
 @click.option("--max-bytes", default=Limits.bytes, show_default=True, help="Length of a request, at most.")
 def command(
     request: str | None,
