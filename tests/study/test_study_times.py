@@ -46,13 +46,14 @@ class Slow:
         return np.asarray(self.values, dtype)
 
 
+@pytest.mark.parametrize("points", ["random", "sobol"])
 @pytest.mark.parametrize("seconds", [1e-6, 1e-5, 1e-4, 1e-3, 1e-2])
-def test_the_time_is_that_of_the_call(monkeypatch, seconds):
+def test_the_time_is_that_of_the_call(monkeypatch, seconds, points):
     clock = Clock()
     monkeypatch.setattr(drawing, "time", clock)
-    study = study_from({**SMALL, "sobol": False})
-    cell = next(cell for cell in cells_of(study) if cell.method.axis == "samples")
-    batch = next(b for b in batches_of(cells_of(study)) if b.cell == cell.index)
+    cells = cells_of(study_from(SMALL))
+    cell = next(cell for cell in cells if cell.method.axis == "samples" and cell.points == points)
+    batch = next(b for b in batches_of(cells) if b.cell == cell.index)
     known = replace(cell, _made={0: Spends(clock, seconds)})
     result = drawing.draw_batch(known, batch, 0.5)
     assert result.cpu / batch.replicates == pytest.approx(seconds, rel=0.06)

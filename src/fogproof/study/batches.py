@@ -22,8 +22,8 @@ TAIL = 64
 """Largest deviations a batch keeps."""
 TAIL_SHARE = 64
 """They are at most one in so many of its samples."""
-_SHORT = 1e-3
-"""Seconds of calls whose time is taken in a loop."""
+_SHORT = 2e-3
+"""Seconds of a batch whose calls are timed in a loop: above, what a first call costs more is some per cent of it at most."""
 _MOST_TURNS = 64
 _AT_ONCE = 1 << 13
 """Realisations whose powers are summed at once."""
@@ -64,18 +64,20 @@ def draw_batch(cell: Cell, batch: Batch, reference: float) -> BatchResult:
         # A call for each replicate, as a program makes it that wants one estimate: its fixed cost belongs to the estimate's time.
         drawn = [(estimator.draw(rng, batch.samples), batch.samples) for _ in range(batch.replicates)]
     wall, cpu = clock.read()
-    if cell.points == "random" and cpu < _SHORT:
-        wall, cpu = _again(estimator, batch, cpu)
     # What the study itself does with the numbers is none of the estimator's time.
     numbers = [numbers_of(cell.name, draws, n) for draws, n in drawn]
     x, cost = np.concatenate([values for values, _ in numbers]), float(np.mean([cost for _, cost in numbers]))
     x = x.reshape(batch.replicates, batch.samples)
+    del drawn, numbers
     with np.errstate(over="ignore", invalid="ignore"):
         own = moments_of(x)
         deviations = np.subtract(x, reference)
         tail = _largest(np.abs(deviations, out=deviations).ravel())
         squares = np.square(deviations, out=deviations).reshape(1, -1)
         moments = np.concatenate([own, moments_of(squares)])
+    del x, deviations, squares
+    if cpu < _SHORT:
+        wall, cpu = _again(cell, estimator, batch, cpu)
     return BatchResult(batch.number, moments, tail, cost, wall, cpu)
 
 
@@ -139,17 +141,21 @@ class _Clock:
         return time.perf_counter() - self._wall, cpu - self._cpu
 
 
-def _again(estimator: Estimator, batch: Batch, cpu: float) -> tuple[float, float]:
+def _again(cell: Cell, estimator: Estimator, batch: Batch, cpu: float) -> tuple[float, float]:
     """Return the wall and processor time of a batch of short calls, made again in a loop of `_SHORT` about.
 
-    The first calls after the study's own work find none of their code and data near the processor, and the clock itself takes
-    time: of a call of a few microseconds that would be most.
+    The first calls after the study's own work find none of their code, data and memory near the processor, and the clock itself
+    takes time: of a call of a few microseconds that would be most.
     """
     rng = np.random.default_rng(batch.number)
     turns = min(_MOST_TURNS, math.ceil(_SHORT / max(cpu, _SHORT / _MOST_TURNS)))
     clock = _Clock()
-    for _ in range(turns * batch.replicates):
-        estimator.draw(rng, batch.samples)
+    if cell.points == "sobol":
+        for _ in range(turns):
+            _with_sobol_points(cell, estimator, batch)
+    else:
+        for _ in range(turns * batch.replicates):
+            estimator.draw(rng, batch.samples)
     wall, cpu = clock.read()
     return wall / turns, cpu / turns
 
