@@ -11,7 +11,7 @@ export OPENBLAS_NUM_THREADS := 1
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help verify gallery study test lint format calibrate zoo repeat families oracle-docs docs sdist fuzz-oracle oracle-hard kill-study torture findings languages try-wheel golden bench mutants mutants-sample clean
+.PHONY: help verify gallery study test lint format calibrate zoo repeat families oracle-docs docs sdist fuzz-oracle oracle-hard oracle-memory kill-study torture findings languages try-wheel golden bench mutants mutants-sample clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -65,6 +65,9 @@ families: $(VENV)/.installed-test  ## errors in a corner of a family's parameter
 
 oracle-hard: $(VENV)/.installed-test  ## every function of the oracle on 10^5 hard cases; rewrites docs/oracle-accuracy.md
 	$(BIN)/python tools/oracle_hard.py --table docs/oracle-accuracy.md
+
+oracle-memory: $(VENV)/.installed-test  ## which functions of the oracle take more memory the more numbers they are asked for
+	$(BIN)/python tools/oracle_memory.py
 
 oracle-docs: $(VENV)/.installed  ## write the tables of docs/oracle.md and the published schema anew
 	$(BIN)/python tools/write_oracle_docs.py

@@ -51,6 +51,10 @@ def _smooth(subject: Subject, size: float, trial: int, up: bool) -> Subject:
     return _by_line(subject, _with_density(lambda x: 1 + sign * size * np.sqrt(2 * k + 1) * p(2 * x - 1)))
 
 
+def _straight_or_bent(subject: Subject, size: float, trial: int, up: bool) -> Subject:
+    return _smooth(subject, size, trial % 2, up)
+
+
 def _two_level(size: float, up: bool) -> tuple[float, float, float]:
     """Return a share of cells and the ratios in those and in the others, of mean 1 and root mean square deviation `size`."""
     if size < 0.9:
@@ -234,6 +238,7 @@ PLANTS = (
     Plant("chi-square, fine joint", square, _uneven_plane, True),
     Plant("labels", box, _factor),
     Plant("labels in cells", box, _ripple),
+    Plant("labels along smooth functions", box, _straight_or_bent),
     Plant("labels by level of the pdf", box, _factor),
     Plant("labels, largest cell", box, _one_cell, True),
     Plant("atom", with_atoms, _other_atom),

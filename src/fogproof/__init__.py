@@ -7,6 +7,9 @@ Importing this package loads NumPy alone; everything heavier loads where it is u
 
 from __future__ import annotations
 
+from fogproof import module_start as _module_start  # noqa: F401  # before all that a file could stand in the place of
+
+# isort: split
 import importlib
 from typing import TYPE_CHECKING, Any
 

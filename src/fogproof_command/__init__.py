@@ -3,31 +3,47 @@
 A package of its own, because Python runs `fogproof/__init__.py` before any module of it.
 """
 
-import contextlib
+from __future__ import annotations
+
 import os
 import signal
 import sys
 
 from fogproof_command.startup import FAULT, end_of
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import NoReturn
+
 
 def main() -> None:
     """Run the command line; a signal before it listens, or after, ends the process with one word and the usual code."""
+    prepare()
+    try:
+        from fogproof.cli import main as command_line
+    except Exception as error:
+        explain(error)
+    else:
+        command_line()
+
+
+def prepare() -> None:
+    """Listen to signals while modules are loaded, and mind the system's limits."""
     for name in ("SIGINT", "SIGTERM", "SIGHUP", "SIGXCPU"):
         number = getattr(signal, name, None)
         if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, _stop)
     mind_limits()
-    try:
-        from fogproof.cli import main as command_line
-    except Exception as error:
-        what, code = end_of(error)
-        own = "a fault of fogproof's own, please report it with the command: " if code == FAULT else ""
-        with contextlib.suppress(OSError):
-            os.write(2, f"fogproof: {own}{what}\n".encode("utf-8", "backslashreplace"))
-        os._exit(code)
 
-    command_line()
+
+def explain(error: BaseException) -> NoReturn:
+    """End with a sentence that says why modules could not be loaded, and its code."""
+    what, code = end_of(error)
+    own = "a fault of fogproof's own, please report it with the command: " if code == FAULT else ""
+    try:
+        os.write(2, f"fogproof: {own}{what}\n".encode("utf-8", "backslashreplace"))
+    finally:
+        os._exit(code)
 
 
 def mind_limits() -> None:

@@ -7,8 +7,6 @@ from __future__ import annotations
 
 import os
 import sys
-import sysconfig
-import traceback
 
 BAD_INPUT = 2
 FAULT = 70
@@ -21,27 +19,62 @@ def end_of(error: BaseException) -> tuple[str, int]:
     if any(isinstance(one, MemoryError) or any(words in str(one).lower() for words in _NO_ROOM) for one in behind):
         return "there is not enough memory to load what this needs; allow more (ulimit -v)", BAD_INPUT
     for one in behind:
-        for frame in reversed(traceback.extract_tb(one.__traceback__)):
-            name = shadowed(frame.filename)
+        for filename in (*_passed(one), _asked(one)):
+            name = shadowed(filename)
             if name:
-                where = f"{frame.filename} stands in the place of the module {name}"
+                where = f"{filename} stands in the place of the module {name}"
                 return f"{where}; rename it, or take its folder out of PYTHONPATH", BAD_INPUT
     return f"{type(error).__name__}: {error}", FAULT
 
 
 def shadowed(filename: str) -> str:
     """Return the name of the installed or standard module in whose place a file is found, "" if it is in nobody's."""
+    if not filename:
+        return ""
     folder, file = os.path.split(os.path.abspath(filename))
     if os.path.basename(filename) == "__init__.py":
         folder, file = os.path.split(folder)
     name = file.removesuffix(".py")
-    homes = {os.path.abspath(path) for path in (*sysconfig.get_paths().values(), os.path.dirname(os.__file__))}
+    homes = _homes()
     if any(folder == home or folder.startswith(home + os.sep) for home in homes):
         return ""
     if name in sys.stdlib_module_names:
         return name
     found = (os.path.join(home, name) for home in homes)
     return name if any(os.path.isfile(f"{path}.py") or os.path.isfile(f"{path}/__init__.py") for path in found) else ""
+
+
+def _homes() -> set[str]:
+    """Return the folders of what is installed, and of Python's own modules."""
+    own = os.path.dirname(os.path.abspath(os.__file__))
+    try:
+        import sysconfig
+
+        paths = [*sysconfig.get_paths().values()]
+    except (AttributeError, ImportError):  # itself in somebody's place
+        paths = [path for path in sys.path if os.path.basename(path) in ("site-packages", "dist-packages")]
+    return {own, *map(os.path.abspath, paths)}
+
+
+def _passed(error: BaseException) -> list[str]:
+    """Return the files an error came through, the innermost first. Without `traceback`, which may be what is missing."""
+    files: list[str] = []
+    at = error.__traceback__
+    while at is not None:
+        files.insert(0, at.tb_frame.f_code.co_filename)
+        at = at.tb_next
+    return files
+
+
+def _asked(error: BaseException) -> str:
+    """Return the file of the module that lacks what it was asked for, "" if an error is about something else."""
+    if isinstance(error, AttributeError):
+        module = error.obj
+    elif isinstance(error, ImportError) and error.name:
+        module = sys.modules.get(error.name.partition(".")[0])
+    else:
+        module = None
+    return str(getattr(module, "__file__", None) or "") if isinstance(module, type(sys)) else ""
 
 
 def _behind(error: BaseException) -> list[BaseException]:

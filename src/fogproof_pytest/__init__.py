@@ -5,6 +5,7 @@
 
 The test fails if the verdict is rejected, and if it is inconclusive unless it has the mark `fogproof(inconclusive="pass")`.
 Nothing but pytest is imported here: fogproof itself is loaded by the first test that asks for the fixture.
+PYTEST_DONT_REWRITE: there are no assertions here, and `entry_point` has this package loaded before pytest could look at it.
 """
 
 from __future__ import annotations

@@ -387,6 +387,7 @@ def test_p_values_of_labels_are_uniform():
     for test in (
         lambda sums: labels.whole("", (sums,), 1e-6),
         lambda sums: labels.levels("", (sums,), 1e-6),
+        lambda sums: labels.smooth("", (sums,), 1e-6),
         lambda sums: labels.cells_at("", depth - 3, (sums,), 1e-6),
         lambda sums: labels.cells_at("", 2, (sums,), 1e-6),
     ):
@@ -409,7 +410,9 @@ def test_the_stated_resolution_of_labels_is_true():
 
 def test_few_coins_say_nothing():
     none = np.empty(0)
-    nothing = Sums.of(none, none, none.astype(int), 8, np.zeros(3))
+    nothing = Sums.of(none, none, none.astype(int), 8, np.zeros(3), (np.zeros(5), np.zeros((5, 5))))
+    unweighed = labels.smooth("", (nothing,), 1e-6)
+    assert (unweighed.outcome, unweighed.resolution) == ("not rejected", None), "that is for the sum of all to say"
     assert labels.whole("", (nothing,), 1e-6).outcome == "inconclusive"
     assert labels.cells_at("", 2, (nothing,), 1e-6).outcome == "inconclusive"
     assert labels.largest("", lambda d, i: "", (nothing,), 1e-6).outcome == "not rejected"

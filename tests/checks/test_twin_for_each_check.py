@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from fogproof import (
+    Box,
     Draw,
     Draws,
     HalfLine,
@@ -107,6 +108,12 @@ def copied(share):
     return sample
 
 
+def bent(u):
+    """Along each axis a density 1 + 0.1 (6 x^2 - 6 x + 1): halves of an axis have their share."""
+    x = np.linspace(0, 1, 10_001)
+    return np.interp(u, x + 0.1 * (2 * x**3 - 3 * x**2 + x), x)
+
+
 def given_up(share):
     return lambda u: Draw(u[:, 0], valid=u[:, 1] >= share)
 
@@ -166,6 +173,7 @@ SAMPLERS = {
     "cdf against the pdf": (flat, lambda x: 1 + 1e-3 * np.cos(2 * np.pi * x), LINE, {"cdf": lambda x: x}),
     "cdf against the pdf in the square": (
         lambda u: u, lambda x: 1 + 0.02 * np.cos(2 * np.pi * x[:, 0]), UnitSquare(), {"cdf": lambda x: x, "dimensions": 2}),
+    "labels along smooth functions": (bent, ones, Box((0.0,) * 8, (1.0,) * 8), {"dimensions": 8}),
     "continuous part": (given_up(0.0), ones, LINE, {"dimensions": 2, "atoms": {0.5: 0.1}}),
 }  # fmt: skip
 ALSO = {

@@ -7,9 +7,11 @@ import subprocess
 import sys
 import threading
 import time
+import types
 from functools import partial
 from pathlib import Path
 
+import numpy as np
 import pytest
 from fuzz_commands import Run, here
 
@@ -73,10 +75,36 @@ def test_a_file_in_the_place_of_a_module_is_known(tmp_path):
     assert shadowed(os.__file__) == shadowed(pytest.__file__) == ""
 
 
-def test_it_is_named_before_anything_is_loaded(tmp_path):
-    (tmp_path / "numpy.py").write_text("raise ValueError")
+def test_a_module_that_lacks_what_it_is_asked_for_is_known(tmp_path):
+    module = types.ModuleType("numpy")
+    module.__file__ = str(tmp_path / "numpy.py")
+    said = f"{module.__file__} stands in the place of the module numpy; rename it, or take its folder out of PYTHONPATH"
+    assert end_of(AttributeError("x", obj=module, name="x")) == (said, BAD_INPUT)
+    assert end_of(AttributeError("x", obj=np, name="x"))[1] == FAULT
+
+
+def test_files_beside_one_are_nobodys(tmp_path):
+    """`python -m fogproof` is the console script, in a folder of any files."""
+    for name in ("numpy", "click", "json", "signal", "traceback", "scipy", "fogproof_command"):
+        (tmp_path / f"{name}.py").write_text("raise ValueError")
+    done = subprocess.run([sys.executable, "-m", "fogproof", "list"], capture_output=True, cwd=tmp_path, check=False)
+    assert (done.returncode, done.stderr) == (0, b"")
+
+
+def test_a_module_may_load_us_while_python_looks_for_it(tmp_path):
+    """Its own folder stays where it is."""
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "__init__.py").write_text("import fogproof")
+    (tmp_path / "mine" / "__main__.py").write_text("import beside")
+    (tmp_path / "beside.py").write_text("print('beside')")
+    assert subprocess.check_output([sys.executable, "-m", "mine"], cwd=tmp_path) == b"beside\n"
+
+
+@pytest.mark.parametrize("start", [CONSOLE, [sys.executable, "-m", "fogproof"]], ids=["console", "module"])
+def test_it_is_named_before_anything_is_loaded(tmp_path, start):
+    (tmp_path / "numpy.py").write_text("x = 1")
     done = subprocess.run(
-        [*CONSOLE, "list"], capture_output=True, env={**os.environ, "PYTHONPATH": str(tmp_path)}, check=False
+        [*start, "list"], capture_output=True, env={**os.environ, "PYTHONPATH": str(tmp_path)}, check=False
     )
     assert done.returncode == BAD_INPUT
     assert done.stderr.startswith(f"fogproof: {tmp_path}/numpy.py stands in the place of the module numpy".encode())

@@ -5,6 +5,7 @@ import re
 import subprocess
 import sys
 import textwrap
+from importlib import metadata
 from xml.etree import ElementTree
 
 import pytest
@@ -208,6 +209,22 @@ def test_a_test_that_was_not_counted_gets_no_share(tmp_path):
     out = run(tmp_path, text)
     assert out.returncode == 1
     assert "name the fixture among the test's arguments" in out.stdout
+
+
+NAMES = [("-p", "fogproof_pytest"), ("-p", "no:fogproof")]
+
+
+@pytest.mark.parametrize("options", NAMES, ids=" ".join)
+def test_the_plugin_is_turned_on_and_off_by_its_name(tmp_path, options):
+    """Whatever names it, it is there once; turned off, it is not there."""
+    if "fogproof" not in {point.name for point in metadata.entry_points(group="pytest11")}:
+        pytest.skip("this environment was made before the entry point had its name; `make test` renews it")
+    (tmp_path / "test_mine.py").write_text("def test_there(fogproof):\n    pass\n")
+    if options[1] == "fogproof_pytest":
+        (tmp_path / "conftest.py").write_text("pytest_plugins = ['fogproof_pytest']\n")
+    call = [sys.executable, "-m", "pytest", *options, "-p", "no:cacheprovider", "-q", str(tmp_path)]
+    out = subprocess.run(call, capture_output=True, text=True, cwd=tmp_path, check=False).stdout
+    assert ("fixture 'fogproof' not found" if options[1].startswith("no:") else "1 passed") in out
 
 
 def test_the_plugin_alone_loads_nothing_heavy():

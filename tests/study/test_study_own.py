@@ -113,3 +113,48 @@ def test_what_is_no_number_has_no_bias(tmp_path):
     for estimator in run_study(read_study(path), tmp_path / "run")["scenes"][0]["estimators"]:
         assert estimator["status"] == "rejected"
         assert estimator["bias"] is None
+
+
+DECLARING = """
+    from fogproof.contracts import Reference
+
+    class Mine:
+        {of_class}
+
+        def __init__(self, scene):
+            {of_object}
+
+        def draw(self, rng, n):
+            return {drawn}
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "rule"),
+    [
+        ("drawn", "rng.random(n) * 1j", "draw: TypeError: must return real numbers, got complex128"),
+        ("of_object", "self.variance = -1", "variance must be finite and >= 0, got -1.0; give the exact"),
+        ("of_object", "self.variance = 1j", "variance must be a number"),
+        ("of_object", "self.variance = [1, 2]", "variance must be a single number"),
+        ("of_object", "self.variance = Reference(-0.5, 0.1)", "variance: value must be finite and not below 0 by more"),
+        ("of_object", "self.bounds = (1, 0)", "bounds must be two finite numbers"),
+        ("of_class", "bias = True", "bias must be a text, got True; say in words why"),
+        ("of_class", "title = 3", "title must be a text, got 3"),
+    ],
+)
+def test_what_breaks_its_contract_is_named_before_anything_runs(tmp_path, name, value, rule):
+    whole = {"of_class": "pass", "of_object": "pass", "drawn": "rng.random(n)"}
+    path = study_file(tmp_path / "s", [{"kind": "my_module:Mine"}], DECLARING.format(**{**whole, name: value}))
+    with pytest.raises(FogproofError, match=rf"study\.toml: scene 'fog', my_module:Mine: my_module:Mine: {rule}"):
+        prepare(cells_of(read_study(path)))
+    path = study_file(tmp_path / "s", [{"kind": "my_module:Mine"}], DECLARING.format(**whole))
+    prepare(cells_of(read_study(path)))
+
+
+@pytest.mark.parametrize("name", ["", " "])
+def test_a_scene_has_a_name(tmp_path, name):
+    (tmp_path / "study.toml").write_text(
+        toml({"samples": [64], "scenes": [{**SCENE, "name": name, "estimators": ["analog"]}]})
+    )
+    with pytest.raises(FogproofError, match=r"name must not be blank, got .* give the scene a name"):
+        read_study(tmp_path / "study.toml")

@@ -33,6 +33,7 @@ WEIGHTS = {
     "labels": 1.0,
     "label cells": 0.5,
     "label levels": 1.0,
+    "label scores": 1.0,
     "largest cell": 0.5,
     "serial correlation": 0.25,
     "repeated points": 0.25,

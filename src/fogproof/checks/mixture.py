@@ -13,6 +13,7 @@ import numpy as np
 
 from fogproof.checks.density.lattice import lattice
 from fogproof.checks.density.tree import Tree
+from fogproof.checks.statistics.label_scores import Basis
 from fogproof.checks.statistics.labels import Sums
 from fogproof.checks.streams import batch_generator
 from fogproof.checks.subject import Subject, in_domain, nudged
@@ -38,6 +39,7 @@ class MixtureTest:
     """The known law of one subject.
 
     tree     in the coordinates of the domain's law
+    basis    smooth functions of the same coordinates
     seed     of the check
     most     batches that are mixed: the first so many
     rounded  whether the pdf changes much by rounding somewhere: such points are left out
@@ -47,6 +49,7 @@ class MixtureTest:
     subject: Subject
     law: Law
     tree: Tree
+    basis: Basis
     seed: int
     most: int
     rounded: bool
@@ -58,7 +61,7 @@ class MixtureTest:
         rng = batch_generator(seed, "labels", 0, 0)
         u = law.coordinates(points, rng.random((len(points), len(law.axes))))
         rounded = len(points) > 0 and not law.stepped and bool(moved_by_rounding(subject, points[:_CHECKED]).any())
-        mixture = MixtureTest(subject, law, Tree.of(u, _PER_LEAF), seed, most, rounded)
+        mixture = MixtureTest(subject, law, Tree.of(u, _PER_LEAF), Basis.of(u), seed, most, rounded)
         if subject.precision != "float32" or law.stepped or len(points) == 0:
             return mixture
         return replace(mixture, steps=bool(np.mean(mixture._across(points[:_CHECKED])) > _FEW))
@@ -113,7 +116,8 @@ class MixtureTest:
     def nothing(self) -> Sums:
         """Return the sums over no points."""
         none = np.empty(0)
-        return Sums.of(none, none, none.astype(np.intp), len(self.tree.share), np.zeros(3))
+        weighed = self.basis.weighed(np.empty((0, len(self.law.axes))), none, none)
+        return Sums.of(none, none, none.astype(np.intp), len(self.tree.share), np.zeros(3), weighed)
 
     def count(self, draw: Draw, good: np.ndarray, p: np.ndarray, index: int) -> tuple[Sums, Sums]:
         """Return the sums over batch number `index`: with all samples as labels, and with those alone that were not given up.
@@ -158,8 +162,8 @@ class MixtureTest:
         theirs = np.where(telling[len(used) :], theirs, 0.0)
         ratios = np.array([tosses - samples, theirs.sum(), np.square(theirs).sum()])
         if not telling.all():
-            labels, w, leaf = labels[telling], w[telling], leaf[telling]
-        return Sums.of(labels, w, leaf, len(self.tree.share), ratios)
+            labels, w, leaf, coordinates = labels[telling], w[telling], leaf[telling], coordinates[telling]
+        return Sums.of(labels, w, leaf, len(self.tree.share), ratios, self.basis.weighed(coordinates, labels, w))
 
     def _across(self, points: np.ndarray) -> np.ndarray:
         """Return (n,) which points rounding may move into another cell of the histogram."""

@@ -134,6 +134,7 @@ def _add_labels(add: Callable[..., None], mixture: MixtureTest, tally: Tally) ->
     depth = mixture.tree.depth
     for level in range(depth, 1, -_COARSER):
         add("label cells", labels.cells_at, f"labels in {1 << level} cells", level, conventions)
+    add("label scores", labels.smooth, "labels along smooth functions", conventions)
     add("label levels", labels.levels, "labels by level of the pdf", conventions)
     add("largest cell", labels.largest, "labels, largest cell", mixture.describe, conventions)
 

@@ -13,6 +13,5 @@ from fogproof.oracle.limits import Limits
 def answer_timeout(command: Callable[..., int]) -> Callable[..., int]:
     """Give a command the option: seconds for each answer, 0 for no limit."""
     told = "Seconds for one answer, 0 for no limit."
-    return click.option("--timeout", type=SECONDS_OR_NONE, default=Limits.seconds, show_default=True, help=told)(
-        command
-    )
+    option = click.option("--timeout", type=SECONDS_OR_NONE, default=Limits.seconds, show_default=True, help=told)
+    return option(command)

@@ -41,6 +41,8 @@ class StudyScene(Question):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        if not self.name.strip():
+            raise InvalidValueError("name", "must not be blank", self.name, "give the scene a name")
         if not self.estimators:
             raise InvalidValueError("estimators", "must name at least one", [])
 

@@ -18,6 +18,7 @@ import numpy as np
 
 from fogproof.checks.statistics.cells import MISS, unevenness
 from fogproof.checks.statistics.chi_square import pooled
+from fogproof.checks.statistics.label_scores import scores
 from fogproof.checks.statistics.tails import chi_square_detected, gamma_above, normal_quantile
 from fogproof.checks.verdict import Finding, Outcome, Resolution
 
@@ -38,15 +39,29 @@ class Sums:
     cells   one column a leaf of the tree
     levels  one column a level of w
     ratios  (3,) over the points of the known law alone: 1, p / q, (p / q)^2
+    score   (q,) of residuals weighed with smooth functions of the point
+    spread  (q, q) their covariance
     """
 
     cells: np.ndarray
     levels: np.ndarray
     ratios: np.ndarray
+    score: np.ndarray
+    spread: np.ndarray
 
     @staticmethod
-    def of(labels: np.ndarray, w: np.ndarray, cell: np.ndarray, cells: int, ratios: np.ndarray) -> Sums:
-        """Return the sums over points with labels (n,) of 0 or 1, probabilities w (n,), in the given cells (n,)."""
+    def of(
+        labels: np.ndarray,
+        w: np.ndarray,
+        cell: np.ndarray,
+        cells: int,
+        ratios: np.ndarray,
+        weighed: tuple[np.ndarray, np.ndarray],
+    ) -> Sums:
+        """Return the sums over points with labels (n,) of 0 or 1, probabilities w (n,), in the given cells (n,).
+
+        weighed  score and spread
+        """
         variance = w * (1 - w)
         columns = (labels - w, variance, variance * (1 - 2 * w), variance * variance)
         with np.errstate(divide="ignore"):
@@ -55,16 +70,17 @@ class Sums:
             np.stack([np.bincount(cell, column, cells) for column in columns]),
             np.stack([np.bincount(level, column, LEVELS) for column in columns]),
             ratios,
+            *weighed,
         )
 
     @property
     def columns(self) -> tuple[np.ndarray, ...]:
         """All sums."""
-        return self.cells, self.levels, self.ratios
+        return self.cells, self.levels, self.ratios, self.score, self.spread
 
     def merged(self, other: Sums) -> Sums:
         """Return the sums over both."""
-        return Sums(self.cells + other.cells, self.levels + other.levels, self.ratios + other.ratios)
+        return Sums(*(mine + theirs for mine, theirs in zip(self.columns, other.columns, strict=True)))
 
 
 def tail(total: np.ndarray, variance: np.ndarray, third: np.ndarray) -> np.ndarray:
@@ -136,6 +152,11 @@ def cells_at(name: str, depth: int, sums: tuple[Sums, ...], alpha: float) -> Fin
 def levels(name: str, sums: tuple[Sums, ...], alpha: float) -> Finding:
     """Chi-square of the residuals in levels of w: are places as frequent as the pdf is high there?"""
     return _convention([_chi_square(name, each.levels, alpha) for each in sums])
+
+
+def smooth(name: str, sums: tuple[Sums, ...], alpha: float) -> Finding:
+    """Score test of the residuals along smooth functions of the point."""
+    return _convention([scores(name, each.score, each.spread, float(each.cells[1].sum()), alpha) for each in sums])
 
 
 def _convention(findings: list[Finding]) -> Finding:

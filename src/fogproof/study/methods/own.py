@@ -25,10 +25,11 @@ from typing import Any, ClassVar
 import numpy as np
 
 from fogproof.contracts import Draws, Reference
-from fogproof.errors import FogproofError, InvalidInputError, SubjectError, shorten
+from fogproof.errors import FogproofError, InvalidInputError, InvalidValueError, SubjectError, shorten
 from fogproof.study.methods.method import Method
 from fogproof.study.own_code import digest_of, loaded
 from fogproof.study.question import Question
+from fogproof.validate import number
 
 
 @dataclass(frozen=True)
@@ -48,17 +49,34 @@ class Own(Method):
     quantity: ClassVar[Any] = None
 
     def make(self, scene: Question, count: int) -> Any:
-        """Return the estimator, which answers for what it draws."""
-        return _Answering(self.source, self._made(scene))
+        """Return the estimator, which answers for what it draws; what it declares is held to its contract here, before a run."""
+        made = self._made(scene)
+        _ = self._variance_of(made), self._bounds_of(made), self.title, self.bias
+        return _Answering(self.source, made)
 
     def variance(self, scene: Question) -> Reference | None:
         """Return what it says its variance is, if anything."""
-        said = getattr(self._made(scene), "variance", None)
-        return None if said is None else Reference.of("variance", said)
+        return self._variance_of(self._made(scene))
+
+    def _variance_of(self, made: Any) -> Reference | None:
+        said = getattr(made, "variance", None)
+        if said is None:
+            return None
+        fix = "give the exact variance of one realisation, or None"
+        name = f"{self.source}: variance"
+        if not isinstance(said, Reference):
+            return Reference(np.asarray(number(name, said, "must be finite and >= 0", 0, fix=fix)))
+        error = number(f"{name}: error", np.max(said.error), "must be finite and >= 0", 0)
+        # A right variance of 0 may be known as a little less.
+        number(f"{name}: value", float(said), "must be finite and not below 0 by more than its error", -error, fix=fix)
+        return said
 
     def bounds(self, scene: Question) -> tuple[float, float] | None:
         """Return between what it says its realisations lie, if anything."""
-        said = getattr(self._made(scene), "bounds", None)
+        return self._bounds_of(self._made(scene))
+
+    def _bounds_of(self, made: Any) -> tuple[float, float] | None:
+        said = getattr(made, "bounds", None)
         if said is None:
             return None
         try:
@@ -73,7 +91,7 @@ class Own(Method):
     @property
     def title(self) -> str:
         """Its own, or its name."""
-        return str(getattr(self._maker(), "title", self.source))
+        return self._words("title", "give its name in words, or None") or self.source
 
     @property
     def dimensions(self) -> int | None:
@@ -87,7 +105,14 @@ class Own(Method):
     @property
     def bias(self) -> str:
         """Why it is biased, "" if it should not be."""
-        return str(getattr(self._maker(), "bias", ""))
+        return self._words("bias", "say in words why its mean is not the quantity, or None where it is")
+
+    def _words(self, name: str, fix: str) -> str:
+        """Return a text that the class declares, "" if it is None or not there."""
+        said = getattr(self._maker(), name, None)
+        if said is not None and not isinstance(said, str):
+            raise InvalidValueError(f"{self.source}: {name}", "must be a text", said, fix)
+        return said or ""
 
     def _maker(self) -> Any:
         module, _, name = self.source.partition(":")
@@ -121,7 +146,10 @@ class _Answering:
     def draw(self, rng: np.random.Generator, n: int) -> Any:
         try:
             drawn = self.made.draw(rng, n)
-            shape = np.asarray(drawn.value if isinstance(drawn, Draws) else drawn, dtype=np.float64).shape
+            values = np.asarray(drawn.value if isinstance(drawn, Draws) else drawn)
+            if values.dtype.kind == "c":
+                raise TypeError(f"must return real numbers, got {values.dtype}")
+            shape = values.astype(np.float64, copy=False).shape
         except FogproofError:
             raise
         except (Exception, SystemExit) as error:  # what ends a program must not end a study
