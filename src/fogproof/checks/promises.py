@@ -14,6 +14,7 @@ from fogproof.checks.subject import Subject, call, in_domain, named, nudged, rou
 from fogproof.checks.verdict import Finding
 from fogproof.contracts import Draw
 from fogproof.domains import Discrete
+from fogproof.domains.law import at_the_ends
 from fogproof.errors import shorten
 
 _CAUSES = {
@@ -40,6 +41,7 @@ _TELLING = {
 }
 """Words of an example that say more than the name of the promise."""
 
+_NEARLY = 1e-6  # slack: 3e-5 of a size, where an end lies; more is no rounding of single precision either
 _ENOUGH = 16  # densities that tell how they are wrong
 _ROUNDED = (
     1 / 128
@@ -95,7 +97,7 @@ class Watch:
         """Check one batch; return (n,) which samples are good points of the continuous part, and (good,) the pdf there."""
         subject, x = self.subject, draw.x
         within = inside(subject, draw)
-        few = _few_digits(subject, x[~within])
+        few = _few_digits(subject, x[~within]) or _nearly(subject, x[~within])
         self._note("domain", ~within, lambda i: f"x = {shorten(x[i])} is not a point of {subject.domain}{few}", len(x))
         good = within
         if subject.atoms:
@@ -252,6 +254,14 @@ def _few_digits(subject: Subject, x: np.ndarray) -> str:
         return ""
     slack = _ROUNDED * (digits.relative + digits.absolute)
     return f"; {digits.words}" if bool(np.all(subject.domain.contains(x, slack))) else ""
+
+
+def _nearly(subject: Subject, x: np.ndarray) -> str:
+    """Return in words that points lie beyond an end by little, and by how much they may; "" if not so."""
+    if isinstance(subject.domain, Discrete) or not len(x) or not bool(np.all(subject.domain.contains(x, _NEARLY))):
+        return ""
+    forgiven = at_the_ends(16 * subject.roundoff)  # as in `in_domain`
+    return f", beyond an end by more than rounding explains, {forgiven:.0e} of the domain's size: clamp it"
 
 
 def _with_usual_noise(slack: np.ndarray, value: np.ndarray) -> np.ndarray:
