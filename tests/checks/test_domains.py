@@ -122,3 +122,49 @@ BAD = [
 def test_bad_domains_are_explained(make, message):
     with pytest.raises(InvalidValueError, match=message):
         make()
+
+
+ENDS = [  # a point at an end, the way out, the size
+    (Interval(0.0, 10.0), 0.0, -1.0, 10.0),
+    (Interval(-2.0, 5.0), 5.0, 1.0, 7.0),
+    (HalfLine(1.0), 1.0, -1.0, 1.0),
+    (Rectangle((-1, 2), (3, 2.5)), (3.0, 2.2), (1.0, 0.0), 4.0),
+    (Box((0, 0, 0), (1, 2, 4)), (0.5, 1.0, 0.0), (0.0, 0.0, -1.0), 4.0),
+    (UnitDisk(), (1.0, 0.0), (1.0, 0.0), 1.0),
+    (Ball(2.0, (0, 0, 0)), (0.0, 2.0, 0.0), (0.0, 1.0, 0.0), 2.0),
+    (UnitHemisphere(), (1.0, 0.0, 0.0), (0.0, 0.0, -1.0), 1.0),
+    (SphericalTriangle((1, 0, 0), (0, 1, 0), (0, 0, 1)), (math.sqrt(0.5), math.sqrt(0.5), 0.0), (0.0, 0.0, -1.0), 1.0),
+    (Triangle((0, 0), (2, 0), (0, 2)), (1.0, 0.0), (0.0, -1.0), 2.0),
+]
+
+
+@pytest.mark.parametrize(("domain", "end", "out", "size"), ENDS, ids=lambda value: type(value).__name__)
+def test_rounding_is_forgiven_at_every_end_and_no_more(domain, end, out, size):
+    beyond = np.array(end) + np.multiply.outer([0.0, 1e-14, 1e-12, 1e-9, 1e-6], np.array(out)) * size
+    assert domain.contains(beyond, 16 * 2.0**-53).tolist() == [True, True, True, False, False]
+
+
+def equiangular(excess=0.0):
+    """Return a sampler and its pdf on [0, 10] that relies on tan and arctan to undo each other, and lies too far out by a share."""
+    near, distance, length = 7.0, 0.01, 10.0
+    low, high = math.atan2(-near, distance), math.atan2(length - near, distance)
+
+    def sample(u):
+        t = near + distance * np.tan(low + (high - low) * u[:, 0])
+        return t + excess * length * (2 * (t > 5) - 1)
+
+    def pdf(t):
+        inside = (t >= 0) & (t <= length)
+        return np.where(inside, distance / ((high - low) * (distance**2 + (t - near) ** 2)), 0.0)
+
+    return sample, pdf
+
+
+def test_a_sampler_may_miss_the_end_of_its_support_by_rounding():
+    sample, pdf = equiangular()
+    ends = sample(np.array([[0.0], [1.0]]))
+    assert -1e-11 < ends[0] < 0 or 0 < ends[1] - 10 < 1e-11  # it does
+    verdict = check_sampler(sample, pdf, Interval(0, 10), dimensions=1, samples=20_000, alpha=1e-7)
+    assert verdict.outcome == "not rejected", verdict
+    verdict = check_sampler(*equiangular(1e-8), Interval(0, 10), dimensions=1, samples=20_000, alpha=1e-7)
+    assert verdict.outcome == "rejected"

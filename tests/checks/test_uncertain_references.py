@@ -7,7 +7,16 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from fogproof import Draws, Interval, Reference, check_convergence, check_estimator, check_sampler, compare_estimators
+from fogproof import (
+    Draws,
+    Interval,
+    InvalidValueError,
+    Reference,
+    check_convergence,
+    check_estimator,
+    check_sampler,
+    compare_estimators,
+)
 from fogproof.checks.statistics.bets import Bets
 from fogproof.checks.statistics.extremes import extremes_p
 from fogproof.checks.statistics.known import Known
@@ -164,3 +173,12 @@ def test_facts_that_hold_for_every_law_know_the_error_too():
             mine = [(p, chance) for each, p, chance in found if each == name]
             for t, _ in mine:
                 assert sum(chance for p, chance in mine if p <= t) <= t * (1 + 1e-9), (name, share, t)
+
+
+def test_a_share_of_nothing_is_no_tolerance():
+    def draw(rng, n):
+        return rng.standard_normal(n)
+
+    with pytest.raises(InvalidValueError, match="absolute part where the reference is 0"):
+        check_estimator(draw, 0.0, tolerance=0.01)
+    assert check_estimator(draw, 0.0, tolerance=(0.01, 0.01), samples=N, alpha=1e-7).outcome == "not rejected"

@@ -175,9 +175,18 @@ def test_a_program_that_ignores_the_end_of_its_input_is_killed_and_told_of(tmp_p
     assert time.monotonic() - started < 60
 
 
-@pytest.mark.parametrize(
-    ("end", "note"), [("sys.exit(5)", "ended with exit code 5"), ("out.write(b'bye')", "wrote 3 bytes more")]
-)
+def test_a_program_that_ends_in_failure_does_not_pass(tmp_path):
+    path = program(tmp_path)
+    with open(path[-1], "a") as file:
+        file.write("\nsys.exit('checksum is wrong')\n")
+    verdict = judged(path).verdict
+    assert verdict.outcome == "inconclusive"
+    told = verdict.findings[-1].message
+    assert "exit code 1" in told
+    assert "checksum is wrong" in told
+
+
+@pytest.mark.parametrize(("end", "note"), [("out.write(b'bye')", "wrote 3 bytes more")])
 def test_what_a_program_does_at_its_end_is_noted(tmp_path, end, note):
     path = program(tmp_path)
     with open(path[-1], "a") as file:

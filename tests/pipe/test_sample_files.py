@@ -199,3 +199,36 @@ def test_no_row_is_too_early_to_be_looked_at(tmp_path, row):
     x[row] = np.nan
     verdict = check_file(written(tmp_path / "x.npy", x), PATHS).verdict
     assert (verdict.outcome, verdict.cause) == ("rejected", "outside the domain"), verdict
+
+
+def test_a_table_whose_integral_is_wrong_says_what_to_divide_by(tmp_path):
+    x = np.linspace(0, 1, 41)
+    np.savetxt(tmp_path / "pdf.csv", np.stack([x, 4 * x], axis=-1), delimiter=",")
+    spec = {"domain": {"kind": "interval", "a": 0, "b": 1}, "table": str(tmp_path / "pdf.csv")}
+    outcome = check_file(written(tmp_path / "x.npy", np.sqrt(np.random.default_rng().random(5000))), spec)
+    assert outcome.verdict.outcome == "rejected"
+    assert "integrate to 2 where 1 is due: divide them by 2" in outcome.notes[0]
+
+
+def test_swapped_columns_are_named(tmp_path):
+    x = np.linspace(0, 1, 41)
+    np.savetxt(tmp_path / "pdf.csv", np.stack([2 - 2 * x, x], axis=-1), delimiter=",")
+    spec = {"domain": {"kind": "interval", "a": 0, "b": 1}, "table": str(tmp_path / "pdf.csv")}
+    samples = 1 - np.sqrt(np.random.default_rng().random(5000))
+    with pytest.raises(FogproofError, match="must increase; its columns are swapped"):
+        check_file(written(tmp_path / "x.npy", samples), spec)
+    np.savetxt(tmp_path / "pdf.csv", np.stack([1 - x, 2 - 2 * x], axis=-1), delimiter=",")
+    with pytest.raises(FogproofError) as refused:  # neither way do points increase
+        check_file(tmp_path / "x.npy", spec)
+    assert "columns are" not in str(refused.value)
+
+
+@pytest.mark.parametrize("length", [1.0, 2.0])  # densities on either side of 1 lie outside of [0, 1], and inside [0, 2]
+def test_swapped_columns_of_points_and_densities_are_named(tmp_path, length):
+    s = 1.5 - np.sqrt(2.25 - 2 * np.random.default_rng().random(40_000))  # of the density 1.5 - s on [0, 1]
+    path = written(tmp_path / "both.npy", np.stack([(1.5 - s) / length, s * length], axis=-1))
+    spec = {"domain": {"kind": "interval", "a": 0, "b": length}}
+    verdict = check_file(path, {**spec, "columns": ["x", "pdf"]}).verdict
+    assert (verdict.outcome, verdict.cause) == ("rejected", "layout"), verdict
+    right = check_file(path, {**spec, "columns": ["pdf", "x"]}, Settings(alpha=1e-7)).verdict
+    assert right.outcome == "not rejected", right

@@ -118,7 +118,8 @@ class Watch:
         if zero.any() and not isinstance(
             subject.domain, Discrete
         ):  # the very edge of the support may be missed by rounding
-            near = [subject.density(y) for y in nudged(points[zero], subject.roundoff)]
+            beside = (*nudged(points[zero], subject.roundoff), _within(subject, points[zero]))
+            near = [subject.density(y) for y in beside]
             zero[zero] = ~np.any([np.isfinite(q) & (q > 0) for q in near], axis=0)
         if pole.any():
             self._note("infinite pdf", pole, lambda i: f"pdf is inf at the sampled x = {shorten(points[i])}", len(at))
@@ -236,6 +237,12 @@ class Watch:
             else:
                 found.append(Finding(name, "not rejected", f"kept by all {n} samples"))
         return found
+
+
+def _within(subject: Subject, x: np.ndarray) -> np.ndarray:
+    """Return the points, those beyond an end of the domain or at it moved inside; the others stay but for rounding."""
+    law, edge = subject.domain.law(x), max(2.0**-46, 4 * subject.roundoff)  # of an axis, from its ends
+    return law.place(np.clip(law.coordinates(x, np.full((len(x), len(law.axes)), 0.5)), edge, 1 - edge))
 
 
 def _few_digits(subject: Subject, x: np.ndarray) -> str:

@@ -87,6 +87,7 @@ def quantities_of(
             raise InvalidValueError("variance", "needs one reference, not one for each order", declared.variance)
         return [_order(label, one, declared) for label, one in reference.items()] + cost
     value, own = _exact("reference", reference, None)
+    _require_meaning(declared.tolerance, value)
     error = declared.widened(value, own)
     low, high = declared.bounds
     inside = (value + error >= low) & (value - error <= high)
@@ -130,10 +131,22 @@ def quantities_of(
                 zero,
                 (error / unit) ** 2,
                 cause,
+                own=(own / unit) ** 2,
             )
         )
     mean = CheckedQuantity("mean", lambda d: d.value, value, error, "bias", tuple(known), own, ways=OF_A_MEAN)
     return [mean, *more, *cost]
+
+
+def _require_meaning(tolerance: tuple[float, float], value: np.ndarray) -> None:
+    """Refuse a tolerance that is a share of nothing."""
+    relative, absolute = tolerance
+    if relative > 0 and absolute == 0 and not value.any():
+        rule, fix = (
+            "must have an absolute part where the reference is 0, of which every share is 0",
+            "give (0, absolute)",
+        )
+        raise InvalidValueError("tolerance", rule, relative, fix)
 
 
 def _rounding_of_variance(v: np.ndarray, value: np.ndarray, roundoff: float) -> np.ndarray:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fogproof.domains.law import Law, squared
+from fogproof.domains.law import Law, at_the_ends, squared
 from fogproof.domains.sphere import TURN, azimuth, direction, versine
 from fogproof.errors import InvalidValueError
 from fogproof.validate import coordinates, number
@@ -36,7 +36,8 @@ class Ball:
     def contains(self, x: np.ndarray, slack: float) -> np.ndarray:
         """Return which points are no farther from the centre than the radius."""
         scale = self.radius + float(np.max(np.abs(self.center)))
-        return squared(x - np.array(self.center)) <= self.radius**2 + 4 * slack * scale * self.radius
+        room = max(4 * slack * scale, 2 * at_the_ends(slack) * self.radius)
+        return squared(x - np.array(self.center)) <= self.radius**2 + room * self.radius
 
     def law(self, pilot: np.ndarray) -> Law:
         """Return the uniform law."""

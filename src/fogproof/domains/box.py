@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fogproof.domains.law import Law
+from fogproof.domains.law import Law, at_the_ends
 from fogproof.errors import InvalidValueError
 from fogproof.validate import coordinates
 
@@ -17,7 +17,7 @@ _NAMES = "xyz"
 
 def contained(low: np.ndarray, high: np.ndarray, x: np.ndarray, slack: float) -> np.ndarray:
     """Return (n,) which points (n, k) lie between two corners (k,)."""
-    room = slack * np.maximum(np.maximum(np.abs(low), np.abs(high)), high - low)
+    room = np.maximum(slack * np.maximum(np.abs(low), np.abs(high)), at_the_ends(slack) * (high - low))
     return np.all((x >= low - room) & (x <= high + room), axis=-1)
 
 

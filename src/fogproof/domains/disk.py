@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fogproof.domains.law import Law, squared
+from fogproof.domains.law import Law, at_the_ends, squared
 from fogproof.domains.sphere import TURN, azimuth
 
 
@@ -19,7 +19,7 @@ class UnitDisk:
 
     def contains(self, x: np.ndarray, slack: float) -> np.ndarray:
         """Return which points have a radius of 1 at most."""
-        return squared(x) <= 1 + 2 * slack
+        return squared(x) <= 1 + 2 * at_the_ends(slack)
 
     def law(self, pilot: np.ndarray) -> Law:
         """Return the uniform law."""

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fogproof.domains.law import Law
+from fogproof.domains.law import Law, at_the_ends
 from fogproof.errors import InvalidValueError
 from fogproof.validate import number
 
@@ -55,8 +55,9 @@ class Tail:
 
 
 def _bounded(low: float, high: float, x: np.ndarray, slack: float) -> np.ndarray:
-    scale = slack * max((abs(end) for end in (low, high) if math.isfinite(end)), default=0.0)
-    return np.isfinite(x) & (x >= low - scale) & (x <= high + scale)
+    scale = max((abs(end) for end in (low, high) if math.isfinite(end)), default=0.0)
+    room = max(slack * scale, at_the_ends(slack) * min(high - low, 2 * scale))
+    return np.isfinite(x) & (x >= low - room) & (x <= high + room)
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fogproof.domains.law import Law, squared
+from fogproof.domains.law import Law, at_the_ends, squared
 from fogproof.errors import InvalidValueError
 from fogproof.validate import number
 
@@ -75,7 +75,7 @@ class UnitHemisphere:
 
     def contains(self, x: np.ndarray, slack: float) -> np.ndarray:
         """Return which vectors have length 1 and do not point down."""
-        return unit(x, slack) & (x[..., 2] >= -slack)
+        return unit(x, slack) & (x[..., 2] >= -at_the_ends(slack))
 
     def law(self, pilot: np.ndarray) -> Law:
         """Return the uniform law."""

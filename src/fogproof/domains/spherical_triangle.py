@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fogproof.domains.law import Law
+from fogproof.domains.law import Law, at_the_ends
 from fogproof.domains.sphere import UnitSphere, cap
 from fogproof.errors import InvalidValueError
 
@@ -56,7 +56,8 @@ class SphericalTriangle:
         sign = np.sign(self._determinant)
         sides = [np.cross(first, second) * sign for first, second in ((a, b), (b, c), (c, a))]
         sines = [np.linalg.norm(side) for side in sides]
-        room = slack / min(sines)  # formulas that rest on the excess of the angles lose so much on a small triangle
+        lost = slack / min(sines)  # formulas that rest on the excess of the angles lose so much on a small triangle
+        room = max(lost, at_the_ends(slack) * min(sines))
         inner = np.all([x @ side >= -room * sine for side, sine in zip(sides, sines, strict=True)], axis=0)
         return UnitSphere().contains(x, slack) & inner
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fogproof.domains.law import Law
+from fogproof.domains.law import Law, at_the_ends
 from fogproof.errors import InvalidValueError
 from fogproof.validate import coordinates
 
@@ -60,7 +60,7 @@ class Triangle:
         edges = self._edges
         size = float(np.max(np.abs(edges)))
         thin = size * size / (2 * self.measure)  # a thin triangle's shares lose as many digits
-        room = 4 * slack * max(scale / size, 1.0) * thin
+        room = max(4 * slack * max(scale / size, 1.0) * thin, at_the_ends(slack))
         inner = (of_b >= -room) & (of_c >= -room) & (of_b + of_c <= 1 + room)
         return inner & (off <= 4 * slack * max(scale, size))
 

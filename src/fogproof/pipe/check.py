@@ -15,6 +15,7 @@ import numpy as np
 from fogproof.checks import Finding, Verdict, check_estimator, check_family, check_sampler, fresh_seed
 from fogproof.checks.digits import digits_of
 from fogproof.checks.subject import Precision, Subject
+from fogproof.contracts import Draw
 from fogproof.errors import InvalidInputError, NotInstalledError, SubjectError
 from fogproof.pipe.estimator import PipeEstimator, draws_of
 from fogproof.pipe.faults import BROKEN, ProgramError
@@ -82,6 +83,8 @@ def check_program(
         if seeded is not None:
             cause = verdict.cause or seeded.cause
             verdict = replace(verdict, findings=(*verdict.findings, seeded), cause=cause)
+        if program.failure and verdict.outcome != "rejected":  # it may have failed before, and been silent about it
+            verdict = replace(verdict, findings=(*verdict.findings, Finding("end", "inconclusive", program.failure)))
     except SubjectError as error:
         verdict = failed(error, settings)
     words = command if isinstance(command, str) else shlex.join(command)
@@ -132,12 +135,24 @@ def _of_file(path: Path, base: Spec, settings: Settings) -> Checked:
             fix = "give a column of densities, or phase, medium or table in the spec"
             raise InvalidInputError(f"{path} has no densities; {fix}", "columns")
         subject = _subject(base, truth, _never, _never, precision)
-        return Checked(check_ratios(subject, draw, settings.alpha, settings.seed))
+        verdict = check_ratios(subject, draw, settings.alpha, settings.seed)
+        return Checked(_unless_swapped(verdict, subject, draw, settings))
     recorded = Recorded(draw)
     subject = _subject(base, truth, recorded.sample, partial(_value, truth), precision, recorded.pilot)
     most = min(settings.samples or base.samples or recorded.tested, truth.most or recorded.tested)
     verdict = check_recorded(recorded, subject, most, settings.resolution, settings.alpha, settings.seed)
     return Checked(verdict, truth.notes + _digits(verdict, draw.x))
+
+
+def _unless_swapped(verdict: Verdict, subject: Subject, draw: Draw, settings: Settings) -> Verdict:
+    """Return the verdict; where points and densities pass the other way round, their columns are its cause."""
+    if verdict.outcome != "rejected" or subject.domain.shape or subject.atoms or draw.pdf is None:
+        return verdict
+    other = draw._replace(x=draw.pdf, pdf=draw.x)
+    if check_ratios(subject, other, settings.alpha, verdict.seed).outcome != "not rejected":
+        return verdict
+    told = "points and densities pass when their columns are swapped"
+    return replace(verdict, cause="layout", diagnosis=told)
 
 
 def _command(what: Sequence[str], spec: str, settings: Settings, seed: int) -> str:
@@ -195,6 +210,7 @@ def _member(program: Program, spec: Spec) -> tuple[PipeSampler | PipeEstimator, 
         reference, options = expectation_of(spec), _estimator_options(spec, precision)
         return PipeEstimator(program, spec.dimensions, precision, spec.parameters, reference, options), None
     truth = truth_of(spec, precision)
+    program.notes += truth.notes
     given, wanted = len(greeting.places("x")), int(np.prod(truth.domain.shape, dtype=int))
     if given != wanted:
         raise program.refuse(f'greets with {given} columns "x"; a point of {truth.domain} has {wanted}')

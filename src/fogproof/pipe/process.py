@@ -69,7 +69,7 @@ class Process:
         self._pending: deque[memoryview] = deque()
         self._ahead = b""
         self._said, self._last, self._said_bytes = b"", b"", 0
-        self.note = ""
+        self.note = self.failure = ""
         self._late, self.rest = 0, b""  # bytes that came after the end of the input; the first of what nobody asked for
         self._ended_itself = False
 
@@ -147,7 +147,7 @@ class Process:
     def stop(self) -> None:
         """End the input, wait a moment for the program to end by itself, and end it and its children whatever it does.
 
-        `note` says afterwards what it did that was not asked of it.
+        `note` says afterwards what it did that was not asked of it, `failure` how it ended otherwise than well by itself.
         """
         if not self._open:
             return
@@ -176,8 +176,10 @@ class Process:
             self.note = f"it wrote {extra} bytes more than it was asked for"
         elif code is None:
             self.note = f"it did not end within {self.timeouts.end:g} s of the end of its input, and was killed"
-        elif code and before is None:
-            self.note = f"it {end_of(code)} after the end of its input"
+        if code:
+            after = "after the end of its input" if before is None else "before its input did"
+            self.failure = f"the program {end_of(code)} {after}, {self.answers} whole answers notwithstanding"
+            self.failure += f"; on stderr: {self.said[:1000]}" if self.said else "; it wrote nothing to stderr"
 
     def _unread(self, data: bytes) -> None:
         self._late += len(data)

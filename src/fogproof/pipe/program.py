@@ -19,8 +19,8 @@ class Program:
     command   the command line, as a text that is split like a shell's, or as words; no shell is started
     timeouts  how long it may take
 
-    `notes` and `said` (to stderr) tell afterwards what it did besides, `ahead` that an answer was left which nobody had asked
-    for; `shown` are points of its first large answer.
+    `notes` and `said` (to stderr) tell afterwards what it did besides, `failure` that it ended otherwise than well, `ahead` that
+    an answer was left which nobody had asked for; `shown` are points of its first large answer.
     """
 
     def __init__(self, command: str | Sequence[str], timeouts: Timeouts | None = None) -> None:
@@ -28,7 +28,7 @@ class Program:
         self._process: Process | None = None
         self.notes: list[str] = []
         self.shown: np.ndarray | None = None
-        self.said, self.ahead, self._waiting, self._before = "", "", False, 0
+        self.said, self.failure, self.ahead, self._waiting, self._before = "", "", "", False, 0
         self.greeting = self._start()
 
     def __enter__(self) -> Program:
@@ -117,7 +117,7 @@ class Program:
         if self._process is not None:
             process, self._process = self._process, None
             process.stop()
-            self.said = process.said
+            self.said, self.failure = process.said, self.failure or process.failure
             if not self._waiting and process.rest.startswith(b'{"n"'):
                 self.ahead = self.ahead or "answered once more than it was asked"
             if process.note:

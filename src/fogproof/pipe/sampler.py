@@ -110,6 +110,11 @@ def misread(domain: Domain, rows: np.ndarray, columns: tuple[str, ...]) -> tuple
             inside = domain.contains(x if domain.shape else x[:, 0], _SLACK)
         return float(np.mean(valid & plain & inside & ~tiny.any(axis=1)))
 
+    if columns.count("pdf") == 1 and len(places) == 1 and _exchanged(domain, rows, places[0], columns.index("pdf")):
+        return (
+            "has densities where points are due, and points where densities are due: its columns are swapped",
+            "layout",
+        )
     if good(rows) > 0.1:
         return None
     if good(swapped(rows)) > 0.9:
@@ -119,6 +124,18 @@ def misread(domain: Domain, rows: np.ndarray, columns: tuple[str, ...]) -> tuple
     if good(rows.reshape(rows.shape[1], rows.shape[0]).T) > 0.9:
         return "writes one coordinate after the other where one sample after the other is due", "layout"
     return None
+
+
+def _exchanged(domain: Domain, rows: np.ndarray, x: int, pdf: int) -> bool:
+    """Return whether columns of points and densities break a promise in every tenth row, and keep all the other way round."""
+    if domain.shape or not np.isfinite(rows).all():
+        return False
+
+    def kept(points: np.ndarray, densities: np.ndarray) -> float:
+        return float(np.mean(domain.contains(points, _SLACK) & (densities > 0)))
+
+    given, other = rows[:, x].astype(np.float64), rows[:, pdf].astype(np.float64)
+    return kept(given, other) <= 0.9 and kept(other, given) == 1
 
 
 def _pairs(rows: np.ndarray) -> np.ndarray:

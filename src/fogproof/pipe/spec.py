@@ -75,7 +75,7 @@ class Spec:
     bounds: tuple[float, float] | None = None
     nonnegative: bool = False
     tails: Literal["unknown", "light"] = "unknown"
-    tolerance: float = 0.0
+    tolerance: float | tuple[float, float] = 0.0
     parameters: dict[str, float] = field(default_factory=dict)
     family: dict[str, Any] = field(default_factory=dict)
     columns: tuple[str, ...] = ()
@@ -113,7 +113,7 @@ _TYPES: dict[str, Any] = {
     "bounds": (tuple[float, float] | None, None),
     "nonnegative": (bool, False),
     "tails": (Literal["unknown", "light"], "unknown"),
-    "tolerance": (float, 0.0),
+    "tolerance": (float | tuple[float, float], 0.0),
     "parameters": (dict[str, float] | None, None),
     "columns": (tuple[str, ...], ()),
     "type": (Literal["float64", "float32"], "float64"),

@@ -22,6 +22,7 @@ from fogproof.errors import InvalidInputError, InvalidValueError, UnsupportedErr
 from fogproof.pipe.files import read_rows
 
 _UNSEEN = 0.1  # noncentrality that no test sees
+_SAME = 1e-6  # of an integral: printed digits
 _LEAST = 1000  # samples, fewer decide nothing
 _LINES = (Interval, HalfLine, RealLine)
 
@@ -36,29 +37,33 @@ class Table:
     notes: tuple[str, ...] = ()
 
 
-def read_density(path: Path, domain: Domain, axis: tuple[float, float, float] | None, exact: bool) -> Table:
-    """Return the density that a file holds for a domain, or raise a `FogproofError` that names the file."""
-    rows, _ = read_rows(path, 0, "float64")
+def read_density(
+    path: Path, domain: Domain, axis: tuple[float, float, float] | None, exact: bool, mass: float = 1.0
+) -> Table:
+    """Return the density that a file holds for a domain, or raise a `FogproofError` that names the file.
+
+    mass  its integral: what atoms leave
+    """
+    rows, names = read_rows(path, 0, "float64")
     if isinstance(domain, UnitSquare):
-        return _map(path, rows)
+        return _map(path, rows, mass)
     if not isinstance(domain, (*_LINES, UnitSphere)):
         raise UnsupportedError(f"a table serves lines, the sphere and the square, not {domain}", "table")
     if rows.shape[1] != 2 or len(rows) < 2:
         raise InvalidInputError(
             f"{path} must have two columns and at least two rows, got {list(rows.shape)}", str(path)
         )
-    x, p = rows.T
+    x, p = rows.T[::-1] if names == ("pdf", "x") else rows.T
     sphere = isinstance(domain, UnitSphere)
     low, high = (-1.0, 1.0) if sphere else (getattr(domain, end, sign * np.inf) for end, sign in (("a", -1), ("b", 1)))
-    if not (np.diff(x) > 0).all() or not np.isfinite(x).all():
-        raise InvalidInputError(f"{path}: the first column must increase", str(path))
-    if not (np.isfinite(p) & (p >= 0)).all() or not p.any():
-        raise InvalidInputError(f"{path}: the second column must hold finite densities >= 0", str(path))
-    if x[0] < low or x[-1] > high or (sphere and (x[0] > low or x[-1] < high)):
-        rule = "from -1 to 1" if sphere else f"inside [{low:g}, {high:g}]"
-        raise InvalidInputError(f"{path}: the first column must run {rule}, got {x[0]:g} to {x[-1]:g}", str(path))
+    broken = _broken(x, p, low, high, sphere)
+    if broken:
+        hint = (
+            "" if _broken(p, x, low, high, sphere) else "; its columns are swapped: points come first, then densities"
+        )
+        raise InvalidInputError(f"{path}: {broken}{hint}", str(path))
     measure = 2 * np.pi if sphere else 1.0
-    scale, most, notes = (1.0, None, ()) if exact else _tamed(path, x, p * measure)
+    scale, most, notes = _tamed(path, x, p * measure, mass, exact)
     p = p * scale
     if sphere:
         if axis is None:
@@ -76,12 +81,29 @@ def read_density(path: Path, domain: Domain, axis: tuple[float, float, float] | 
     return Table(lambda y: _linear(x, p, y), cdf, most, notes)
 
 
+def _broken(x: np.ndarray, p: np.ndarray, low: float, high: float, whole: bool) -> str:
+    """Return what is wrong with points and densities on [low, high], "" if nothing is; `whole`: they must reach its ends."""
+    if not (np.diff(x) > 0).all() or not np.isfinite(x).all():
+        return "the first column must increase"
+    if not (np.isfinite(p) & (p >= 0)).all() or not p.any():
+        return "the second column must hold finite densities >= 0"
+    if x[0] < low or x[-1] > high or (whole and (x[0] > low or x[-1] < high)):
+        rule = f"from {low:g} to {high:g}" if whole else f"inside [{low:g}, {high:g}]"
+        return f"the first column must run {rule}, got {x[0]:g} to {x[-1]:g}"
+    return ""
+
+
+def _unnormalised(path: Path, total: float, mass: float) -> tuple[str, ...]:
+    due = "1" if mass == 1 else f"{mass:g}, which the atoms leave"
+    return (f"the densities in {path} integrate to {total:.6g} where {due} is due: divide them by {total / mass:.6g}",)
+
+
 def _linear(x: np.ndarray, p: np.ndarray, at: np.ndarray) -> Reference:
     value = np.interp(at, x, p, left=0.0, right=0.0)
     return Reference(value, 1e-14 * value)
 
 
-def _map(path: Path, values: np.ndarray) -> Table:
+def _map(path: Path, values: np.ndarray, mass: float) -> Table:
     h, w = values.shape
     if not (np.isfinite(values) & (values >= 0)).all():
         raise InvalidInputError(f"{path}: densities must be finite and >= 0", str(path))
@@ -90,21 +112,26 @@ def _map(path: Path, values: np.ndarray) -> Table:
         column, row = (np.clip((x[:, i] * n).astype(np.intp), 0, n - 1) for i, n in ((0, w), (1, h)))
         return Reference(values[row, column])
 
-    return Table(density)
+    total = float(values.mean())
+    return Table(density, notes=() if abs(total - mass) <= _SAME * mass else _unnormalised(path, total, mass))
 
 
-def _tamed(path: Path, x: np.ndarray, p: np.ndarray) -> tuple[float, int | None, tuple[str, ...]]:
+def _tamed(
+    path: Path, x: np.ndarray, p: np.ndarray, mass: float, exact: bool
+) -> tuple[float, int | None, tuple[str, ...]]:
     """Return what the table is to be multiplied by, how many samples it can judge, and what is to be said of it."""
     total = float(np.sum(0.5 * np.diff(x) * (p[1:] + p[:-1])))
+    if exact:
+        return 1.0, None, () if abs(total - mass) <= _SAME * mass else _unnormalised(path, total, mass)
     coarse = np.interp(x, x[::2], p[::2]) if len(x) > 4 else np.zeros_like(p)
     off = np.abs(p - coarse) / 3
     floor = np.maximum(p, 1e-3 * p.max())
     noncentrality = float(np.trapezoid(off**2 / floor, x))
     doubt = float(np.trapezoid(off, x))
-    if abs(total - 1) > 3 * doubt + 1e-9:
-        return 1.0, None, ()  # no interpolation explains that: let it be judged
+    if abs(total - mass) > 3 * doubt + 1e-9:  # no interpolation explains that: let it be judged
+        return 1.0, None, _unnormalised(path, total, mass)
     if noncentrality == 0:
-        return 1 / total, None, ()
+        return mass / total, None, ()
     most = int(min(_UNSEEN / noncentrality, 1e12))
     if most < _LEAST:
         raise InvalidInputError(
@@ -112,4 +139,4 @@ def _tamed(path: Path, x: np.ndarray, p: np.ndarray) -> tuple[float, int | None,
             f" {most} samples would see it; give more points, or exact = true if it is made of straight lines",
             str(path),
         )
-    return 1 / total, most, (f"the table of {len(x)} points is good enough to judge {most} samples",)
+    return mass / total, most, (f"the table of {len(x)} points is good enough to judge {most} samples",)

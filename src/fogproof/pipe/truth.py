@@ -57,7 +57,8 @@ def truth_of(spec: Spec, precision: Precision) -> KnownLaw:
     if spec.phase is not None:
         return _scattered(spec, spec.phase, spec.domain, atoms, precision)
     if spec.table is not None:
-        table = read_density(spec.folder / spec.table, spec.domain, spec.axis, spec.exact)
+        left = max(1 - sum(atoms.values()), _TINY)
+        table = read_density(spec.folder / spec.table, spec.domain, spec.axis, spec.exact, left)
         return KnownLaw(
             table.density, spec.domain, atoms, spec.axis, spec.mean_cosine, table.cdf, table.most, table.notes
         )

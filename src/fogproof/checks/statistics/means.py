@@ -68,7 +68,8 @@ def mean_test(
         if p <= alpha - share:
             finding = replace(finding, p_value=max(p, finding.p_value), exact=False, distribution_free=True)
     if finding.outcome == "not rejected" and uncertain > abs(reference) and uncertain > data.stderr:
-        message = f"{finding.message}; the reference is known too coarsely, to within {uncertain:.2g}, to tell it from nothing"
+        coarse = f"the reference is known too coarsely, to within {uncertain:.2g}, to tell it from nothing{_FINER}"
+        message = f"{finding.message}; {coarse}"
         finding = replace(finding, outcome="inconclusive", message=message, p_value=None, resolution=None)
     effect = data.mean - reference
     interval = effect_interval(data, reference, known, two_valued(data))
@@ -76,6 +77,9 @@ def mean_test(
     if rejected and finding.p_value is not None and known.variance is None and not known.bounded:
         finding = replace(finding, message=finding.message + unseen(data, effect, error, alpha, known))
     return replace(finding, interval=interval, cause=cause if rejected else "", region=_side(effect, rejected))
+
+
+_FINER = ": give a smaller error, or say by tolerance=(relative, absolute) how much does not matter"
 
 
 def _side(effect: float, rejected: bool) -> tuple[str, ...]:
