@@ -1,4 +1,4 @@
-"""How often does the integral of a pdf, told by points of a known law, lie within its standard errors? Right samplers and wrong ones.
+"""How often does the integral of a pdf by points of a known law lie within its standard errors? Right samplers and wrong ones.
 
     python tools/label_integrals.py [--samplers 400] [--samples 60000]
 
