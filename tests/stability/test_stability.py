@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from dataclasses import replace
 from types import CodeType, FunctionType, ModuleType
 
@@ -12,7 +13,7 @@ import pytest
 
 from fogproof import analytic, checks, estimators
 from fogproof.contracts import Reference
-from fogproof.errors import InvalidValueError
+from fogproof.errors import InvalidValueError, NotInstalledError
 from fogproof.stability import measure
 from fogproof.stability.axes import decades, fine_uniforms, symmetric, uniforms
 from fogproof.stability.exact import exactly
@@ -142,6 +143,22 @@ def test_a_planted_error_is_found(planted):
     assert row.violations > 0
     assert row.worst > 2
     assert exit_code([row]) == 1
+
+
+@pytest.mark.parametrize("where", ["at once", "in a truth alone"])
+def test_a_missing_package_is_no_fault_of_the_formula(monkeypatch, where):
+    """Without what the truth is made of, every form would lose every digit."""
+    formula = RIGHT
+    if where == "at once":
+        monkeypatch.setitem(sys.modules, "flint", None)
+    else:
+
+        def lost(xi, sigma_t):
+            raise NotInstalledError("python-flint", "rigorous")
+
+        formula = replace(RIGHT, truth=lost)
+    with pytest.raises(NotInstalledError, match="python-flint is not installed; install it with"):
+        measure(formula, 3)
 
 
 def test_an_oracle_that_states_too_small_an_error_is_found():

@@ -14,7 +14,7 @@ from fogproof.errors import InvalidInputError
 from fogproof.zoo import FOLDERS, bugs_of, select
 from fogproof.zoo.bug import sampler_bug
 from fogproof.zoo.laws import ones
-from fogproof.zoo.matrix import counts
+from fogproof.zoo.matrix import counts, summary
 from fogproof.zoo.running import ZooLog, run_bug, run_zoo
 
 UNIT = Interval(0, 1)
@@ -113,6 +113,16 @@ def test_a_stopped_run_goes_on_and_other_settings_are_refused(tmp_path):
     log.path.write_text("{}\n{broken\n")
     with pytest.raises(InvalidInputError, match="holds no rows"):
         log.read()
+
+
+def test_the_goal_of_a_part_is_not_met_but_unfinished():
+    row = run_bug(bug(lambda u: u[:, 0] ** 1.5), 20_000, 1e-6, 1)
+    assert summary([row], {"field": 1, "errata": 3}).splitlines()[1].endswith("named: met")
+    part = summary([row], {"field": 2, "errata": 3})
+    assert "unfinished: 1 of 2" in part
+    assert "unfinished: 0 of 3" in part
+    assert " met" not in part
+    assert "NOT met" in summary([replace(row, status="error")], {"field": 2})  # whatever the rest would say
 
 
 def test_the_command_prints_rows_and_ends_with_what_it_found(tmp_path):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
 from dataclasses import asdict
 from pathlib import Path
 
@@ -104,6 +105,7 @@ def command(
 
         sizes = {name: len(bugs_of(name)) for name in {bug.folder for bug in chosen}}
         write_file(folder / "zoo.md", page(rows, samples, alpha, sizes, len(chosen)))
-    say(summary(rows), err=True)
+    asked = Counter(bug.folder for bug in chosen)
+    say(summary(rows, asked), err=True)
     say(f"{len(rows)} of {len(chosen)} run; seed {seed}", err=True)
     return stop.code or int(not all(count.good for count in counts(rows)))

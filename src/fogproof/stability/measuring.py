@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from fogproof.contracts import Reference
-from fogproof.errors import stop_behind
+from fogproof.errors import NotInstalledError, stop_behind
 from fogproof.stability.exact import ExactValue, exactly, flint
 from fogproof.stability.formula import Evaluate, Formula, HardRegion, Precision
 
@@ -77,7 +77,11 @@ class Point:
 
 
 def measure(formula: Formula, points: int = POINTS) -> list[FormError]:
-    """Return every form of a formula in every region and precision; `points` along an axis of a cheap one."""
+    """Return every form of a formula in every region and precision; `points` along an axis of a cheap one.
+
+    `NotInstalledError` without what the truth is computed with: nothing can be said of any form then.
+    """
+    flint()
     n = max(2, round(points * formula.size))
     return [
         found
@@ -97,6 +101,8 @@ def _measure(formula: Formula, region: HardRegion, precision: Precision, n: int)
     fault = ""
     try:
         truths = [_point(formula, row, precision) for row in rows]
+    except NotInstalledError:  # a truth that needs something else: no form is to blame for that
+        raise
     except Exception as error:
         if stop_behind(error) is not None:
             raise

@@ -13,6 +13,7 @@ import numpy as np
 
 from fogproof.contracts import Estimator, Reference
 from fogproof.errors import FogproofError, InvalidInputError, UnsupportedError
+from fogproof.study.drawn import numbers_of
 from fogproof.study.files import Study, StudyScene, study_of
 from fogproof.study.methods.method import Method
 from fogproof.study.methods.table import name_of
@@ -83,7 +84,7 @@ class Cell:
         with _BUILDING:
             if count not in self._made:
                 estimator = self.method.make(self.scene, count)
-                estimator.draw(np.random.default_rng(0), 1)
+                numbers_of(self.name, estimator.draw(np.random.default_rng(0), 1), 1)
                 if self.points == "sobol":
                     SobolSequence(1, np.random.default_rng(0), np.random.default_rng(0))  # loads scipy.stats
                 self._made[count] = estimator

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
+from fogproof.text import unfinished
 from fogproof.zoo.running import ZooRow
 
 GOALS = {"field": 0.97, "errata": 1.0, "families": 1.0, "outsiders": 1.0, "mutants": 0.99}
@@ -19,6 +20,7 @@ UNDECIDED = 0.02
 class ZooCount:
     """Sums of a folder.
 
+    asked       how many were to run, where that is known
     feasible    bugs that some test could tell at so many samples
     named       of the killed, whose cause was named rightly
     median      samples that half of the killed needed at most
@@ -36,6 +38,7 @@ class ZooCount:
     inconclusive: int
     errors: int
     skipped: int
+    asked: int = 0
 
     @property
     def right(self) -> bool:
@@ -51,16 +54,23 @@ class ZooCount:
             return self.inconclusive <= UNDECIDED * self.total
         return self.killed >= GOALS.get(self.folder, 1.0) * self.feasible and self.named >= NAMED * self.killed
 
+    @property
+    def outcome(self) -> str:
+        """Whether the goal is met, in words: a part does not tell, unless what it found cannot be made good any more."""
+        if self.total < self.asked and not (self.errors or self.false_alarms):
+            return unfinished(self.total, self.asked).lower()
+        return "met" if self.good else "NOT met"
 
-def counts(rows: Iterable[ZooRow]) -> list[ZooCount]:
-    """Return the sums of each folder, in the order of the rows."""
-    folders: dict[str, list[ZooRow]] = {}
+
+def counts(rows: Iterable[ZooRow], asked: Mapping[str, int] | None = None) -> list[ZooCount]:
+    """Return the sums of each folder, in the order of the rows; `asked` says how many of each were to run."""
+    folders: dict[str, list[ZooRow]] = {folder: [] for folder in asked or ()}
     for row in rows:
         folders.setdefault(row.folder, []).append(row)
-    return [_count(folder, of) for folder, of in folders.items()]
+    return [_count(folder, of, (asked or {}).get(folder, len(of))) for folder, of in folders.items()]
 
 
-def _count(folder: str, rows: list[ZooRow]) -> ZooCount:
+def _count(folder: str, rows: list[ZooRow], asked: int) -> ZooCount:
     def many(*status: str) -> int:
         return sum(row.status in status for row in rows)
 
@@ -78,23 +88,24 @@ def _count(folder: str, rows: list[ZooRow]) -> ZooCount:
         many("inconclusive"),
         many("error"),
         many("skipped"),
+        asked,
     )
 
 
-def summary(rows: Iterable[ZooRow]) -> str:
-    """Return the sums as a table for people."""
+def summary(rows: Iterable[ZooRow], asked: Mapping[str, int] | None = None) -> str:
+    """Return the sums as a table for people; see `counts`."""
     lines = [
         f"{'folder':10} {'killed':>12} {'named':>12} {'infeasible':>10} {'equal':>6} {'errors':>7} {'samples':>9}  goal"
     ]
-    for c in counts(rows):
+    for c in counts(rows, asked):
         if c.right:
             what = (
                 f"{c.total} right subjects: {c.false_alarms} rejected, {c.inconclusive} inconclusive, {c.errors} errors"
             )
-            lines.append(f"{c.folder:10} {what}  {'met' if c.good else 'NOT met'}")
+            lines.append(f"{c.folder:10} {what}  {c.outcome}")
             continue
         killed, named = f"{c.killed} of {c.feasible}", f"{c.named} of {c.killed}"
-        goal = f"{GOALS.get(c.folder, 1.0):.0%} killed, {NAMED:.0%} named: {'met' if c.good else 'NOT met'}"
+        goal = f"{GOALS.get(c.folder, 1.0):.0%} killed, {NAMED:.0%} named: {c.outcome}"
         lines.append(
             f"{c.folder:10} {killed:>12} {named:>12} {c.infeasible:10} {c.equal:6} {c.errors:7} {c.median:9}  {goal}"
         )

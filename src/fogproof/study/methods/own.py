@@ -24,7 +24,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from fogproof.contracts import Draws, Reference
+from fogproof.contracts import Reference
 from fogproof.errors import FogproofError, InvalidInputError, InvalidValueError, SubjectError, shorten
 from fogproof.study.methods.method import Method
 from fogproof.study.own_code import digest_of, loaded
@@ -138,22 +138,15 @@ class Own(Method):
 
 @dataclass(frozen=True, eq=False)
 class _Answering:
-    """Holds an estimator to its contract; whatever it raises is told with its name."""
+    """Tells whatever an estimator raises with its name; what it returns is looked at where its time is not taken."""
 
     source: str
     made: Any
 
     def draw(self, rng: np.random.Generator, n: int) -> Any:
         try:
-            drawn = self.made.draw(rng, n)
-            values = np.asarray(drawn.value if isinstance(drawn, Draws) else drawn)
-            if values.dtype.kind == "c":
-                raise TypeError(f"must return real numbers, got {values.dtype}")
-            shape = values.astype(np.float64, copy=False).shape
+            return self.made.draw(rng, n)
         except FogproofError:
             raise
         except (Exception, SystemExit) as error:  # what ends a program must not end a study
             raise SubjectError(f"{self.source}: draw: {type(error).__name__}: {error}", "draw") from None
-        if shape not in ((n,), (n, 1)):
-            raise SubjectError(f"{self.source}: draw(rng, {n}) must return {n} numbers, got shape {shape}", "draw")
-        return drawn
