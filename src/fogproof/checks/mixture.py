@@ -13,6 +13,7 @@ import numpy as np
 
 from fogproof.checks.density.lattice import lattice
 from fogproof.checks.density.tree import Tree
+from fogproof.checks.statistics.integrated import Integrated
 from fogproof.checks.statistics.label_scores import Basis
 from fogproof.checks.statistics.labels import Sums
 from fogproof.checks.streams import batch_generator
@@ -31,6 +32,8 @@ _LEAST_PILOT = 1 << 14  # points that a histogram is made of, at least
 _FOLLOWED = 0.25  # share of the points that follow what the pilot has not seen
 _MOVED = 1e-2  # relative change of the pdf by rounding, from which on its value says nothing
 _FEW = 1e-3  # of the points: so many may lie so near the edges of their cells
+_FINE = 2.0**20  # roundings: sides of cells that all are longer need no look
+_THIN = 8.0  # roundings: a shorter side cannot be drawn from, the points would come out beside it
 _SIX = 6.0  # standard deviations
 
 
@@ -43,7 +46,7 @@ class MixtureTest:
     seed     of the check
     most     batches that are mixed: the first so many
     rounded  whether the pdf changes much by rounding somewhere: such points are left out
-    steps    the same of the histogram, whose cells are no larger than the steps of the points far from the origin
+    steps    the same of the histogram, whose cells may be hardly larger than the steps of the points
     """
 
     subject: Subject
@@ -62,9 +65,26 @@ class MixtureTest:
         u = law.coordinates(points, rng.random((len(points), len(law.axes))))
         rounded = len(points) > 0 and not law.stepped and bool(moved_by_rounding(subject, points[:_CHECKED]).any())
         mixture = MixtureTest(subject, law, Tree.of(u, _PER_LEAF), Basis.of(u), seed, most, rounded)
-        if subject.precision != "float32" or law.stepped or len(points) == 0:
-            return mixture
-        return replace(mixture, steps=bool(np.mean(mixture._across(points[:_CHECKED])) > _FEW))
+        return mixture._without_thin_cells(points)
+
+    def _without_thin_cells(self, points: np.ndarray) -> MixtureTest:
+        """Return the mixture without cells thinner than the steps of points; `points` tell whether the others need care.
+
+        Points drawn in such a cell come out beside it, where the known density is another: what follows from it would be false.
+        Samples crowd in one where they are clamped, or where single precision leaves no others.
+        """
+        single = self.subject.precision == "float32"
+        sides = self.tree.high - self.tree.low
+        if self.law.stepped or len(points) == 0 or not (single or sides.min() < _FINE * self.subject.roundoff):
+            return self
+        middle = 0.5 * (self.tree.low + self.tree.high)
+        half = np.full(middle.shape, 0.5)
+        x = self.law.place(middle)
+        near = [self.law.coordinates(y, half) for y in (x, *nudged(x, self.subject.roundoff))]
+        step = np.max([np.abs(u - middle) for u in near], axis=0)
+        kept = replace(self, tree=self.tree.without(np.any(sides < _THIN * step, axis=1)))
+        across = kept._across(points[:_CHECKED])
+        return replace(kept, steps=bool(np.mean(across) > (_FEW if single else 0.0)))
 
     def wider(self, points: np.ndarray) -> MixtureTest:
         """Return the mixture that also follows the pdf where it is high and no pilot point was: evenly spread points find it."""
@@ -83,6 +103,7 @@ class MixtureTest:
             follow = np.clip(follow + side * (2 * rng.random(follow.shape) - 1), 0, 1)
             found = np.concatenate([found, follow])
             wider = replace(self, tree=Tree.of(rng.permutation(np.concatenate([own, found])), _PER_LEAF))
+            wider = wider._without_thin_cells(points)
             x, u = wider._drawn(rng, n)
             unseen = wider._unseen(rng, u, x, wider._q(x, u, wider.tree.leaf(u)))
             if len(unseen) == 0:
@@ -117,7 +138,7 @@ class MixtureTest:
         """Return the sums over no points."""
         none = np.empty(0)
         weighed = self.basis.weighed(np.empty((0, len(self.law.axes))), none, none)
-        return Sums.of(none, none, none.astype(np.intp), len(self.tree.share), np.zeros(3), weighed)
+        return Sums.of(none, none, none.astype(np.intp), len(self.tree.share), Integrated.of(none).sums, weighed)
 
     def count(self, draw: Draw, good: np.ndarray, p: np.ndarray, index: int) -> tuple[Sums, Sums]:
         """Return the sums over batch number `index`: with all samples as labels, and with those alone that were not given up.
@@ -158,12 +179,10 @@ class MixtureTest:
             telling &= ~moved_by_rounding(self.subject, points)
         if self.steps:
             telling &= ~self._across(points)
-        theirs = ratio[len(used) :]
-        theirs = np.where(telling[len(used) :], theirs, 0.0)
-        ratios = np.array([tosses - samples, theirs.sum(), np.square(theirs).sum()])
+        integrated = Integrated.of(np.where(telling | (claimed == 0), ratio, np.nan)[len(used) :]).sums
         if not telling.all():
             labels, w, leaf, coordinates = labels[telling], w[telling], leaf[telling], coordinates[telling]
-        return Sums.of(labels, w, leaf, len(self.tree.share), ratios, self.basis.weighed(coordinates, labels, w))
+        return Sums.of(labels, w, leaf, len(self.tree.share), integrated, self.basis.weighed(coordinates, labels, w))
 
     def _across(self, points: np.ndarray) -> np.ndarray:
         """Return (n,) which points rounding may move into another cell of the histogram."""

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 
 import numpy as np
 
 from fogproof.checks.mixture import MixtureTest
 from fogproof.checks.statistics.cells import MISS
+from fogproof.checks.statistics.integrated import Integrated
 from fogproof.checks.statistics.tails import normal_quantile
 from fogproof.checks.streams import batch_generator
 from fogproof.checks.subject import call
@@ -49,11 +49,11 @@ def albedo(mixture: MixtureTest) -> list[Finding]:
 def _estimated(name: str, mixture: MixtureTest, f: Callable[[np.ndarray], np.ndarray], claim: float) -> Finding:
     x, q = mixture.known(batch_generator(mixture.seed, name, 0, 0), _POINTS)
     with np.errstate(all="ignore"):
-        values = f(x) / q
-    mean, error = float(np.mean(values)), float(np.std(values)) / math.sqrt(len(values))
+        found = Integrated.of(f(x) / q)
+    if found.why_not:
+        return Finding(name, "inconclusive", f"{name} of the pdf is not known: {found.why_not}")
+    mean, error = found.mean, found.error
     message = f"{name} of the pdf is {mean:.6g} +- {error:.1g} by points of a known law, declared {claim:.9g}"
-    if not math.isfinite(error):
-        return Finding(name, "inconclusive", f"{message}: it is not finite at some of them")
     resolution = Resolution(f"error of the {name}", (_BEYOND_DOUBT + normal_quantile(MISS)) * error, MISS)
     outcome: Outcome = "rejected" if abs(mean - claim) > _BEYOND_DOUBT * error + 1e-12 else "not rejected"
     return Finding(name, outcome, message, effect=mean - claim, resolution=resolution)

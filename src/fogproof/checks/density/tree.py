@@ -8,7 +8,7 @@ Arya & Mount 1998). What the pilot misses is left to whoever mixes the histogram
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -72,6 +72,13 @@ class Tree:
         joined = (np.concatenate(parts) if parts else np.empty(0) for parts in (axes, cuts))
         axis, cut = joined
         return Tree(depth, axis.astype(np.intp), cut, low, high, share / max(share.sum(), 1.0))
+
+    def without(self, gone: np.ndarray) -> Tree:
+        """Return the histogram without the marked leaves (2^depth,): the others share their probability."""
+        if not gone.any():
+            return self
+        share = np.where(gone, 0.0, self.share > 0)
+        return replace(self, share=share / max(share.sum(), 1.0))
 
     def leaf(self, u: np.ndarray) -> np.ndarray:
         """Return (n,) the leaf of each point (n, k)."""

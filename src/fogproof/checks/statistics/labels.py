@@ -18,6 +18,7 @@ import numpy as np
 
 from fogproof.checks.statistics.cells import MISS, unevenness
 from fogproof.checks.statistics.chi_square import pooled
+from fogproof.checks.statistics.integrated import Integrated
 from fogproof.checks.statistics.label_scores import scores
 from fogproof.checks.statistics.tails import chi_square_detected, gamma_above, normal_quantile
 from fogproof.checks.verdict import Finding, Outcome, Resolution
@@ -38,14 +39,14 @@ class Sums:
 
     cells   one column a leaf of the tree
     levels  one column a level of w
-    ratios  (3,) over the points of the known law alone: 1, p / q, (p / q)^2
+    integral  (5,) of p, by the points of the known law alone, see `Integrated`
     score   (q,) of residuals weighed with smooth functions of the point
     spread  (q, q) their covariance
     """
 
     cells: np.ndarray
     levels: np.ndarray
-    ratios: np.ndarray
+    integral: np.ndarray
     score: np.ndarray
     spread: np.ndarray
 
@@ -55,7 +56,7 @@ class Sums:
         w: np.ndarray,
         cell: np.ndarray,
         cells: int,
-        ratios: np.ndarray,
+        integral: np.ndarray,
         weighed: tuple[np.ndarray, np.ndarray],
     ) -> Sums:
         """Return the sums over points with labels (n,) of 0 or 1, probabilities w (n,), in the given cells (n,).
@@ -69,14 +70,14 @@ class Sums:
         return Sums(
             np.stack([np.bincount(cell, column, cells) for column in columns]),
             np.stack([np.bincount(level, column, LEVELS) for column in columns]),
-            ratios,
+            integral,
             *weighed,
         )
 
     @property
     def columns(self) -> tuple[np.ndarray, ...]:
         """All sums."""
-        return self.cells, self.levels, self.ratios, self.score, self.spread
+        return self.cells, self.levels, self.integral, self.score, self.spread
 
     def merged(self, other: Sums) -> Sums:
         """Return the sums over both."""
@@ -113,10 +114,13 @@ def whole(name: str, sums: tuple[Sums, ...], alpha: float) -> Finding:
     resolution = Resolution("deviation from 1 of a factor on the pdf", step * (1 + step), MISS)
     rejected = p <= alpha
     off = total * spread
-    mean, error = _integral(sums)
     message = f"labels less their probabilities sum to {off:+.2f} standard deviations"
-    message += f"; by points of the known law the pdf integrates to {mean:.5g} +- {error:.1g}"
-    cause = "normalisation" if abs(mean - 1) > _WRONG * error else "shape"  # a misfit moves the sum too
+    cause, integral = "shape", Integrated(sums[0].integral)  # a misfit moves the sum too
+    if integral.why_not:
+        message += f"; what the pdf integrates to is not known: {integral.why_not}"
+    else:
+        message += f"; by points of the known law the pdf integrates to {integral.mean:.5g} +- {integral.error:.1g}"
+        cause = "normalisation" if abs(integral.mean - 1) > _WRONG * integral.error else cause
     return Finding(
         name,
         "rejected" if rejected else "not rejected",
@@ -134,14 +138,6 @@ def whole(name: str, sums: tuple[Sums, ...], alpha: float) -> Finding:
 def _total(sums: Sums) -> tuple[float, float, float]:
     total, variance, third, _ = sums.cells.sum(axis=1)
     return float(tail(total, variance, third)), float(total), float(variance)
-
-
-def _integral(sums: tuple[Sums, ...]) -> tuple[float, float]:
-    """Return the integral of the pdf by the points of the known law alone, and its standard error."""
-    n, first, second = sums[0].ratios.tolist()
-    mean = first / max(n, 1)
-    error = math.sqrt(max(second / max(n, 1) - mean * mean, 0.0) / max(n, 1))
-    return mean, error
 
 
 def cells_at(name: str, depth: int, sums: tuple[Sums, ...], alpha: float) -> Finding:
