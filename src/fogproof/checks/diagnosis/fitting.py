@@ -96,7 +96,7 @@ def nearest(middle: Setting, setting: Setting, base: Fit, hypotheses: list[Hypot
         tried.append((gain - hypothesis.price(len(middle.contrast.x)), -order, hypothesis, value, error))
     found = []
     for _, order, hypothesis, value, error in sorted(tried, key=lambda one: one[:2], reverse=True)[:_KEPT]:
-        value, error = _polished(setting, hypothesis, value, error)
+        value, error, _ = _parabola(setting, hypothesis, value, error, _likelihood(setting, hypothesis, value))
         fit = setting.contrast.fit(hypothesis.density(setting, value)(setting.contrast.points))
         share = 1 - max(fit.left - 2 * math.sqrt(2 * fit.freedom), 0.0) / max(base.left, 1.0)
         score = fit.likelihood + _TIE * order / len(hypotheses)
@@ -111,7 +111,7 @@ def _null_likelihood(setting: Setting) -> float:
 def _parabola(
     setting: Setting, hypothesis: Hypothesis, null: float, step: float, at: float
 ) -> tuple[float, float, float]:
-    """Return the parameter, its standard error and the gain of likelihood, by a parabola about the null, of likelihood `at`."""
+    """Return the parameter, its standard error and the gain of likelihood, by a parabola about a value of likelihood `at`."""
     value, error, gain = null, step, 0.0
     for _ in range(3):
         below, above = (_likelihood(setting, hypothesis, null + d) for d in (-step, step))
@@ -121,9 +121,9 @@ def _parabola(
         error = 1 / math.sqrt(curvature)
         slope = (above - below) / (2 * step)
         value, gain = null + slope / curvature, 0.5 * slope**2 / curvature
-        if 0.3 * step < 3 * error < 10 * step:
+        if 0.3 * step < error < 10 * step:
             break
-        step = 3 * error
+        step = error
     return value, error, gain
 
 
