@@ -4,7 +4,8 @@
 
 Every array argument of every quantity's example is made long in turn, tenfold each time, until `--numbers` are reached or a call
 takes a tenth of `--seconds`. What NumPy takes at most beside arguments and answers is measured, and carried on by its last slope to
-what is asked within a minute. Above 300 MiB the exit code is 1.
+what is asked within a minute. Where that is above 300 MiB, a call goes on to take `--seconds`, threefold each time: what is taken
+for blocks of numbers grows before it stays flat. Above 300 MiB at the end the exit code is 1.
 """
 
 from __future__ import annotations
@@ -45,11 +46,20 @@ def carried_on(call: Callable[[int], Any], most: int, seconds: float) -> tuple[T
     """Return what the largest call took, and the MiB that as many as are answered within a minute would take."""
     call(2)
     before, last = Taken(0, 0.0, 0.0), measured(call, FEWEST)
-    while last.numbers < most and last.seconds < seconds / 10:
-        before, last = last, measured(call, min(most, 10 * last.numbers))
+    while last.numbers < most:
+        quick = last.seconds < seconds / 10
+        would = _would(before, last, most)
+        if not quick and (would <= LIMIT or last.seconds > seconds):
+            break
+        before, last = last, measured(call, min(most, (10 if quick else 3) * last.numbers))
+    return last, _would(before, last, most)
+
+
+def _would(before: Taken, last: Taken, most: int) -> float:
+    """Return the MiB that as many numbers as are answered within a minute would take, by the slope of the last two calls."""
     slope = (last.mebibytes - before.mebibytes) / (last.numbers - before.numbers)
     more = min(most, last.numbers * MINUTE / max(last.seconds, 1e-9)) - last.numbers
-    return last, last.mebibytes + max(0.0, slope * more)
+    return last.mebibytes + max(0.0, slope * more)
 
 
 def measured(function: Callable[[int], Any], numbers: int) -> Taken:

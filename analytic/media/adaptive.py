@@ -20,6 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fogproof.analytic.arithmetic.blocks import in_blocks
 from fogproof.analytic.arithmetic.budget import afford, budget, may_refine, of_bounded_variation
 from fogproof.analytic.arithmetic.error_free import EPS, TINY, two_sum
 from fogproof.analytic.arithmetic.panel_rule import NODES
@@ -45,6 +46,9 @@ THICK, UNSEEN = 8.0, 1e-30
 
 BLOCK = 4096
 """Panels evaluated at a time."""
+
+RAYS = 32_768
+"""Rays refined together."""
 
 SPARE = 16.0
 """Times as small as its share is what a jump would cost in a panel without one: halving a smooth one is cheap."""
@@ -84,13 +88,31 @@ def integrate_along(
     tolerance: float = TOLERANCE,
     extinction: SourceTerm = lambda local: local.sigma_t,
 ) -> Along:
-    """Return the optical thickness and the gain along the flattened rays, with estimated errors.
+    """Return the optical thickness and the gain along the flattened rays, with estimated errors; `RAYS` of them at a time.
 
     source      the radiance gained per metre, from the local coefficients
     channels    how many channels the result has, the medium's own unless given
     extinction  what is integrated to the optical thickness [1/m]
     """
-    origin, direction = ray.origin.reshape(-1, 3), ray.direction.reshape(-1, 3)
+    origin, direction, length = ray.origin.reshape(-1, 3), ray.direction.reshape(-1, 3), ray.length.reshape(-1)
+
+    def along(some: np.ndarray) -> Along:
+        rays = Ray(origin[some], direction[some], length[some])
+        return _along(medium, rays, source, channels, tolerance, extinction)
+
+    return Along(*in_blocks(along, RAYS, np.arange(len(origin))))
+
+
+def _along(
+    medium: AnyMedium,
+    ray: Ray,
+    source: SourceTerm,
+    channels: int | None,
+    tolerance: float,
+    extinction: SourceTerm,
+) -> Along:
+    """Return the same of rays (n,), all refined together."""
+    origin, direction = ray.origin, ray.direction
     reach = np.max(np.abs(origin), axis=-1, initial=0.0)
     foreign = hasattr(medium, "detail")
 

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from fogproof.analytic.arithmetic.blocks import in_blocks
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.analytic.declaration import MEAN_FREE_PATHS, quantity
 from fogproof.analytic.multiple.ball_solution import (
@@ -43,6 +44,9 @@ ROUNDING = 64 * EPS
 
 FAINT = 1e-30
 """Albedo below which nothing scatters that could be seen."""
+
+BLOCK = 4096
+"""Places whose modes are in memory at the same time."""
 
 Evaluate = Callable[[Any, BallSolution, np.ndarray, int], np.ndarray]
 """(albedo, solution, places (v,), n) -> values (v,)."""
@@ -168,7 +172,7 @@ def _albedo(c: Any, ball: BallSolution, places: np.ndarray, n: int) -> np.ndarra
 
 
 def _source(c: Any, ball: BallSolution, places: np.ndarray, n: int) -> np.ndarray:
-    return source_at(ball, places, ball.radius - places)
+    return in_blocks(lambda r: (source_at(ball, r, ball.radius - r),), BLOCK, places)[0]
 
 
 def _radiance(c: Any, ball: BallSolution, places: np.ndarray, n: int) -> np.ndarray:

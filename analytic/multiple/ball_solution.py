@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fogproof.analytic.arithmetic.blocks import in_blocks
 from fogproof.analytic.arithmetic.error_free import TINY
 from fogproof.analytic.arithmetic.gauss_legendre import unit_rule
 from fogproof.analytic.multiple.slab_modes import Modes, amplitudes
@@ -72,8 +73,7 @@ def seen_along_chords(ball: BallSolution, impact: np.ndarray, n: int) -> np.ndar
 
     n  nodes of a Gauss-Legendre rule on each half of the visible part of a chord
     """
-    blocks = [impact[i : i + BLOCK] for i in range(0, max(len(impact), 1), BLOCK)]  # one, if empty, for none
-    return np.concatenate([_seen(ball, block, n) for block in blocks])
+    return in_blocks(lambda some: (_seen(ball, some, n),), BLOCK, impact)[0]
 
 
 def _seen(ball: BallSolution, impact: np.ndarray, n: int) -> np.ndarray:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from fogproof.analytic.arithmetic.blocks import in_blocks
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
 from fogproof.analytic.declaration import quantity
 from fogproof.analytic.multiple.chandrasekhar_h import (
@@ -131,10 +132,8 @@ def half_space_spherical_albedo(albedo: FloatArray, phase: PhaseFunctionField | 
     c, phase = checked_albedo(albedo), checked_phase(phase)
     if not is_isotropic(phase):
         return _doubled(c, None, phase)
-    flat, absorbed = np.maximum(c.ravel(), FAINT)[:, None], 1 - c.ravel()[:, None]
-    parts = [_bimoment(flat[i : i + _ROWS], absorbed[i : i + _ROWS]) for i in range(0, max(len(flat), 1), _ROWS)]
-    value = np.concatenate(parts)
-    value = np.where(absorbed[:, 0] == 0, 1.0, value).reshape(c.shape) * (c / np.maximum(c, FAINT))
+    (value,) = in_blocks(lambda *some: (_bimoment(*some),), _ROWS, np.maximum(c, FAINT), 1 - c)
+    value = np.where(c == 1, 1.0, value) * (c / np.maximum(c, FAINT))
     return Reference(value, 32 * EPS * value + TINY, METHOD, SOURCE)
 
 
@@ -143,7 +142,8 @@ _ROWS = 1024
 
 
 def _bimoment(flat: np.ndarray, absorbed: np.ndarray) -> np.ndarray:
-    """Return the spherical albedo over the albedo itself, (v, 1) each -> (v,); 1 is put where nothing is absorbed."""
+    """Return the spherical albedo over the albedo itself, (v,) each; 1 is put where nothing is absorbed."""
+    flat, absorbed = flat[:, None], absorbed[:, None]
     with np.errstate(all="ignore"):
         z = one_minus_theta_cot(angle(_S))
         x = flat / absorbed * z

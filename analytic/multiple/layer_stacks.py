@@ -22,8 +22,8 @@ from fogproof.scene.grounds import Ground
 from fogproof.scene.kinds import given
 from fogproof.scene.phase import PhaseFunction
 
-_TOGETHER = 256
-"""Cosines of beams that one solution is asked for: a few hundred megabytes."""
+_TOGETHER = 96
+"""Cosines of beams that one solution is asked for: as many as its nodes, or fewer, is what takes the least time."""
 
 
 class LayerMedium(NamedTuple):

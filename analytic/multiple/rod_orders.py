@@ -18,6 +18,7 @@ import math
 
 import numpy as np
 
+from fogproof.analytic.arithmetic.blocks import in_blocks
 from fogproof.analytic.arithmetic.error_free import EPS, TINY
 
 THIN, FEWEST, TERMS = 2.0**-12, 10, 12
@@ -29,6 +30,9 @@ What is left out, relative: 2^-12 for each term, and 2^-10 for each scattering t
 DEEPEST = 1e6
 """Length beyond which a rod sends back what an endless one does after a number of scatterings, and passes nothing."""
 
+BLOCK = 65_536
+"""Coefficients of one series that are in memory at the same time."""
+
 RENEWED = 2
 """EPS of relative error for each doubling and factor of a product; a fifteenth of that was the most to be seen."""
 
@@ -39,17 +43,24 @@ def rod_orders(L: np.ndarray, g: np.ndarray, count: int) -> tuple[np.ndarray, np
     L  (...) length in mean free paths
     g  (...) mean cosine
     """
-    a, b, L = (1 + g) / 2, (1 - g) / 2, np.minimum(L, DEEPEST)
+    L = np.minimum(L, DEEPEST)
     times = max(FEWEST, math.ceil(math.log2(max(float(np.max(L, initial=0.0)), THIN) / THIN)))
+    size = max(1, BLOCK // (count + 1))
     with np.errstate(under="ignore"):
-        R, T = _thin(L * 2.0**-times, a, b, count)
-        for i in range(times):
-            square = _product(T, T)
-            between = _inverse(_product(R, R))
-            R, T = R + _product(_product(square, R), between), _product(square, between)
-            T[..., 0] = np.exp(-L * 2.0 ** (i + 1 - times))
+        R, T = in_blocks(lambda some, its_g: _doubled(some, its_g, count, times), size, L, g)
     n = np.arange(count + 1)
     return R, T, RENEWED * EPS * (times + 1) * (n + 2), 2.0**times * (count + 1) * TINY
+
+
+def _doubled(L: np.ndarray, g: np.ndarray, count: int, times: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return R_n and T_n (v, count + 1) of rods that are doubled so many times."""
+    R, T = _thin(L * 2.0**-times, (1 + g) / 2, (1 - g) / 2, count)
+    for i in range(times):
+        square = _product(T, T)
+        between = _inverse(_product(R, R))
+        R, T = R + _product(_product(square, R), between), _product(square, between)
+        T[..., 0] = np.exp(-L * 2.0 ** (i + 1 - times))
+    return R, T
 
 
 def _thin(L: np.ndarray, a: np.ndarray, b: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:

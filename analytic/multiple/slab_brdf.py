@@ -155,11 +155,11 @@ def _deep_brdf(c: float, tau: float, mu0: np.ndarray, mu: np.ndarray) -> tuple[n
 
 
 def _brdf(c: float, tau: float, mu0: np.ndarray, mu: np.ndarray, n: int) -> np.ndarray:
-    both = seen_at(np.concatenate([mu0, mu]), tau)
+    both, where = np.unique(seen_at(np.concatenate([mu0, mu]), tau), return_inverse=True)
     nodes = quadrature(min(tau, 10 * float(np.min(both))), n)
     modes = isotropic_modes(max(c, EPS**2), 1 - c, *nodes)
     difference, total = _difference(modes, c, tau, both), _total(modes, tau, both)
-    (d0, d), (t0, t) = np.split(difference, 2), np.split(total, 2)
+    (d0, d), (t0, t) = np.split(difference[where], 2), np.split(total[where], 2)
     return c * (d0 * t + t0 * d) / (8 * np.pi * (mu0 + mu))
 
 

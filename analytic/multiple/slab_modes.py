@@ -18,6 +18,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from fogproof.analytic.arithmetic.blocks import in_blocks
 from fogproof.analytic.arithmetic.gauss_legendre import unit_rule
 
 SOURCE = "Chandrasekhar 1960, Radiative Transfer, chapter 8; Stamnes, Tsay, Wiscombe & Jayaweera 1988"
@@ -30,6 +31,9 @@ FINEST = 1e-18
 """Smallest cosine told from 0: what is seen there changes like mu ln(mu)."""
 
 FEWEST = 4
+
+BLOCK = 4096
+"""Directions whose modes are in memory at the same time."""
 
 BEND = 0.98
 """Share of y^2 in the substitution at mu = 0: with 1 the smallest node would be 25 times smaller, and nothing gained."""
@@ -116,6 +120,10 @@ def scattered(modes: Modes, half: float, parity: Parity, amplitude: np.ndarray, 
 
     This is the integral of the source times exp(-(h - x)/mu) over dx/mu, in closed form for each mode.
     """
+    return in_blocks(lambda some: (_scattered(modes, half, parity, amplitude, some),), BLOCK, mu)[0]
+
+
+def _scattered(modes: Modes, half: float, parity: Parity, amplitude: np.ndarray, mu: np.ndarray) -> np.ndarray:
     even, odd = _source(modes, mu)
     k, m = modes.k, mu[:, None]
     with np.errstate(under="ignore", over="ignore"):

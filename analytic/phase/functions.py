@@ -7,11 +7,11 @@ what a parametrisation leaves over (a table, weights, a Lorenz-Mie series) is di
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
+from fogproof.analytic.arithmetic.blocks import in_blocks
 from fogproof.analytic.arithmetic.error_free import EPS
 from fogproof.analytic.declaration import FORWARD, quantity
 from fogproof.analytic.phase.inverse import inverse_cdf
@@ -48,7 +48,7 @@ def phase_pdf(phase: PhaseFunctionField, mu: FloatArray) -> Reference:
     The result has the shape of mu. Closed forms have a relative error of a few eps for every parameter allowed.
     """
     parts = weighted_parts(phase)
-    return _reference(parts, _method(parts, "pdf"), *_in_blocks(lambda x: _sum(parts, "pdf", x), _cosines(mu)))
+    return _reference(parts, _method(parts, "pdf"), *in_blocks(lambda x: _sum(parts, "pdf", x), BLOCK, _cosines(mu)))
 
 
 @quantity(
@@ -67,7 +67,7 @@ def phase_cdf(phase: PhaseFunctionField, mu: FloatArray) -> Reference:
     has an absolute one.
     """
     parts = weighted_parts(phase)
-    return _reference(parts, _method(parts, "cdf"), *_in_blocks(lambda x: _sum(parts, "cdf", x), _cosines(mu)))
+    return _reference(parts, _method(parts, "cdf"), *in_blocks(lambda x: _sum(parts, "cdf", x), BLOCK, _cosines(mu)))
 
 
 @quantity(
@@ -91,8 +91,8 @@ def phase_quantile(phase: PhaseFunctionField, xi: FloatArray) -> Reference:
     simple = parts[0][1]
     quantile = given(simple, ROOM, "quantile")
     if len(parts) == 1 and quantile is not None:
-        return _reference(parts, "closed form", *_in_blocks(lambda x: quantile(simple, x), xi))
-    value, error = _in_blocks(lambda x: inverse_cdf(lambda mu: _sum(parts, "cdf", mu), x), xi)
+        return _reference(parts, "closed form", *in_blocks(lambda x: quantile(simple, x), BLOCK, xi))
+    value, error = in_blocks(lambda x: inverse_cdf(lambda mu: _sum(parts, "cdf", mu), x), BLOCK, xi)
     return _reference(parts, f"root of the cdf ({_method(parts, 'cdf')})", value, error)
 
 
@@ -171,17 +171,6 @@ def _cosines(mu: Any) -> np.ndarray:
     fix = "mu is the dot product of two unit vectors: normalise them"
     require("mu", mu, np.abs(mu) <= 1 + COSINE_SLOP, "must be a cosine in [-1, 1]", fix)
     return np.clip(mu, -1, 1)
-
-
-def _in_blocks(
-    formula: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]], x: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    value, error = np.empty((2, x.size))
-    flat = x.ravel()
-    for start in range(0, flat.size, BLOCK):
-        block = slice(start, start + BLOCK)
-        value[block], error[block] = formula(flat[block])
-    return value.reshape(x.shape), error.reshape(x.shape)
 
 
 def _reference(parts: Parts, method: str, value: Any, error: Any) -> Reference:

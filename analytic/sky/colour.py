@@ -6,12 +6,12 @@ the atmosphere: its Y is 1. `colour.XYZ_to_xy` and `colour.XYZ_to_sRGB` take it 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import cache
 from typing import Any
 
 import numpy as np
 
+from fogproof.analytic.arithmetic.blocks import in_blocks
 from fogproof.analytic.arithmetic.error_free import EPS
 from fogproof.analytic.declaration import quantity
 from fogproof.analytic.sky.rayleigh_atmosphere import air_optical_depth, plane_parallel_sky
@@ -44,12 +44,13 @@ def sun_colour(air_mass: FloatArray) -> Reference:
     """
     air_mass = as_float_array("air_mass", air_mass)
     require("air_mass", air_mass, np.isfinite(air_mass) & (air_mass >= 0), "must be finite and >= 0")
-    return _in_blocks(_sun, air_mass)
+    value, error = in_blocks(_sun, _BLOCK, air_mass)
+    return Reference(value, error, "sum over the spectrum, Beer's law", SOURCE)
 
 
-def _sun(air_mass: np.ndarray) -> Reference:
+def _sun(air_mass: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     path = air_mass[..., None] * air_optical_depth(WAVELENGTHS).value
-    return _tristimulus(np.exp(-path), 60 * np.max(path, axis=-1), "Beer's law")
+    return _tristimulus(np.exp(-path), 60 * np.max(path, axis=-1))
 
 
 @quantity(
@@ -66,32 +67,23 @@ def sky_colour(mu_sun: FloatArray, mu_view: FloatArray, azimuth: FloatArray) -> 
     The sun's spectrum is the daylight illuminant D65. Error: rounding, 1e-13 relative or so.
     """
     named = {"mu_sun": mu_sun, "mu_view": mu_view, "azimuth": azimuth}
-    return _in_blocks(_sky, *(as_float_array(*item) for item in named.items()))
+    value, error = in_blocks(_sky, _BLOCK, *(as_float_array(*item) for item in named.items()))
+    return Reference(value, error, "sum over the spectrum, single scattering, plane-parallel", SOURCE)
 
 
-def _sky(mu_sun: np.ndarray, mu_view: np.ndarray, azimuth: np.ndarray) -> Reference:
+def _sky(mu_sun: np.ndarray, mu_view: np.ndarray, azimuth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     sky = plane_parallel_sky(
         air_optical_depth(WAVELENGTHS).value, mu_sun[..., None], mu_view[..., None], azimuth[..., None]
     )
     with np.errstate(over="ignore"):
         slack = 60 * (2 + 2 * 0.6 / np.maximum(mu_sun, mu_view))  # 48 EPS of the optical depth, which is below 0.6
-    inherited = _tristimulus(sky.error, np.zeros(slack.shape), "")
-    found = _tristimulus(sky.value, slack, "single scattering, plane-parallel")
-    return Reference(found.value, found.error + inherited.value, found.method, found.source)
+    inherited, _ = _tristimulus(sky.error, np.zeros(slack.shape))
+    value, error = _tristimulus(sky.value, slack)
+    return value, error + inherited
 
 
-def _in_blocks(found: Callable[..., Reference], *points: np.ndarray) -> Reference:
-    """Return what is found at points that broadcast, (...) -> (..., 3); a spectrum of each takes kilobytes, so some at a time."""
-    wide = np.broadcast_arrays(*points)
-    flat = [array.reshape(-1) for array in wide]
-    blocks = [found(*(array[i : i + _BLOCK] for array in flat)) for i in range(0, max(flat[0].size, 1), _BLOCK)]
-    value, error = (np.concatenate([getattr(block, name) for block in blocks]) for name in ("value", "error"))
-    shape = (*wide[0].shape, 3)
-    return Reference(value.reshape(shape), error.reshape(shape), blocks[0].method, blocks[0].source)
-
-
-def _tristimulus(spectrum: np.ndarray, eps: np.ndarray, method: str) -> Reference:
-    """Return XYZ of sunlight times `spectrum` (..., 421), each value of which is off by `eps` (...) units of EPS."""
+def _tristimulus(spectrum: np.ndarray, eps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return XYZ of sunlight times `spectrum` (v, 421), each value of which is off by `eps` (v,) units of EPS, and its error."""
     import colour
 
     cmfs, sun, brightness = _observer()
@@ -100,7 +92,7 @@ def _tristimulus(spectrum: np.ndarray, eps: np.ndarray, method: str) -> Referenc
     rounding = 4 * len(WAVELENGTHS) + eps
     with np.errstate(invalid="ignore"):
         error = np.where(XYZ != 0, EPS * rounding[..., None] * np.abs(XYZ), 0.0)
-    return Reference(XYZ, error, f"sum over the spectrum, {method}", SOURCE)
+    return XYZ, error
 
 
 @cache

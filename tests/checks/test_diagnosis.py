@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fogproof import Box, HalfLine, Interval, SphericalTriangle, UnitSphere, UnitSquare, check_sampler
-from fogproof.checks.diagnosis import holes
+from fogproof.checks.diagnosis import diagnosed, holes
 from fogproof.checks.diagnosis.diagnose import _setting
 from fogproof.checks.diagnosis.factors import named_factor
 from fogproof.checks.diagnosis.hypothesis import Hypothesis
@@ -211,3 +211,21 @@ def test_the_line_that_reproduces_a_verdict_needs_no_numpy():
         lambda x: 0.5 * even(x), UnitSphere(), dimensions=2, atoms={mirror: 0.5}, samples=1000,
     )  # fmt: skip
     assert "atoms={(0.6, 0.0, 0.8): 0.5}" in verdict.reproduce
+
+
+def test_the_search_for_a_cause_ends_in_time():
+    """A slow subject: it is asked no more when its time is over, and the verdict keeps the cause that its findings name."""
+    asked = []
+
+    def pdf(x):
+        asked.append(len(x))
+        return hg(0.8)[1](x)
+
+    verdict = check_sampler(hg(0.5)[0], pdf, UnitSphere(), dimensions=2, samples=100_000)
+    subject = Subject(hg(0.5)[0], pdf, UnitSphere(), 2)
+    asked.clear()
+    named, words = diagnosed(subject, verdict.findings, verdict.samples, verdict.seed, 0.0)
+    assert named in {f.cause for f in verdict.findings}
+    assert "was ended after 0 s" in words
+    assert not asked
+    assert diagnosed(subject, verdict.findings, verdict.samples, verdict.seed) == (verdict.cause, verdict.diagnosis)

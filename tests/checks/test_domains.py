@@ -127,7 +127,7 @@ def test_bad_domains_are_explained(make, message):
 ENDS = [  # a point at an end, the way out, the size
     (Interval(0.0, 10.0), 0.0, -1.0, 10.0),
     (Interval(-2.0, 5.0), 5.0, 1.0, 7.0),
-    (HalfLine(1.0), 1.0, -1.0, 1.0),
+    (HalfLine(-1.0), -1.0, -1.0, 1.0),
     (Rectangle((-1, 2), (3, 2.5)), (3.0, 2.2), (1.0, 0.0), 4.0),
     (Box((0, 0, 0), (1, 2, 4)), (0.5, 1.0, 0.0), (0.0, 0.0, -1.0), 4.0),
     (UnitDisk(), (1.0, 0.0), (1.0, 0.0), 1.0),
@@ -142,6 +142,14 @@ ENDS = [  # a point at an end, the way out, the size
 def test_rounding_is_forgiven_at_every_end_and_no_more(domain, end, out, size):
     beyond = np.array(end) + np.multiply.outer([0.0, 1e-14, 1e-12, 1e-9, 1e-6], np.array(out)) * size
     assert domain.contains(beyond, 16 * 2.0**-53).tolist() == [True, True, True, False, False]
+
+
+@pytest.mark.parametrize("size", [1e-8, 1.0, 1e8])
+def test_a_half_line_from_0_has_the_size_of_its_points(size):
+    points = size * np.array([0.0, -1e-14, -1e-12, -1e-9, 1.0, 1.0, 7.0, 1e6, np.inf])
+    within = [True, True, True, False, True, True, True, True, False]
+    assert HalfLine(0.0).contains(points, 16 * 2.0**-53).tolist() == within
+    assert not HalfLine(0.0).contains(np.array([-1e-14, -1e-14, 1.0]) * size, 16 * 2.0**-53)[0]  # most are beyond it
 
 
 def equiangular(excess=0.0):
@@ -168,3 +176,6 @@ def test_a_sampler_may_miss_the_end_of_its_support_by_rounding():
     assert verdict.outcome == "not rejected", verdict
     verdict = check_sampler(*equiangular(1e-8), Interval(0, 10), dimensions=1, samples=20_000, alpha=1e-7)
     assert verdict.outcome == "rejected"
+    assert "9e-12 of the domain's size" in str(verdict)
+    far = check_sampler(*equiangular(1e-3), Interval(0, 10), dimensions=1, samples=20_000, alpha=1e-7)
+    assert "of the domain's size" not in str(far)

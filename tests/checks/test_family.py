@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 import fogproof
 from fogproof.checks import fresh_seed
 from fogproof.checks.family import _rounds
+from fogproof.doing import heard_by
 
 
 class Tilted:
@@ -204,3 +205,15 @@ def test_no_decision_says_what_decides():
     assert "At 3.0, with 2000: mean " in verdict.findings[0].message
     assert "ask for about" in verdict.findings[0].message
     assert "It got 1 / 1 of samples=2000" in verdict.findings[0].message
+
+
+def test_the_cause_is_looked_for_once_and_what_is_done_is_told():
+    """A list: every member of a round is judged, three are wrong, and only the simplest of them is explained."""
+    told = []
+    with heard_by(told.append):
+        verdict = fogproof.check_family(lambda g: Tilted(g, lambda g: -g), [0.8, 0.7, 0.6], samples=300_000)
+    assert (verdict.outcome, verdict.cause) == ("rejected", "sign convention"), verdict
+    assert "opposite direction" in verdict.diagnosis
+    looking = {what.partition(": ")[0] for what in told if "looking for the cause" in what}
+    assert looking == {"0.8"}
+    assert any(what.startswith("2. 0.7: sample 0 of") for what in told)

@@ -182,3 +182,16 @@ def test_a_share_of_nothing_is_no_tolerance():
     with pytest.raises(InvalidValueError, match="absolute part where the reference is 0"):
         check_estimator(draw, 0.0, tolerance=0.01)
     assert check_estimator(draw, 0.0, tolerance=(0.01, 0.01), samples=N, alpha=1e-7).outcome == "not rejected"
+
+
+@pytest.mark.parametrize("spread", [0.0, 1e-3])
+def test_what_is_tolerated_of_a_mean_leaves_no_doubt_of_its_spread(spread):
+    def draw(rng, n):
+        return Draws(rng.normal(1.005, spread, n), stderr=np.full(n, spread))
+
+    options = {"samples": N, "alpha": 1e-7} | ({"variance": spread**2} if spread else {})
+    tolerated = check_estimator(draw, 1.0, tolerance=0.01, **options)
+    assert tolerated.outcome == "not rejected", tolerated
+    unsure = check_estimator(draw, Reference(1.0, 0.01), **options)
+    assert unsure.outcome == "inconclusive", unsure
+    assert "known too coarsely" in str(unsure)

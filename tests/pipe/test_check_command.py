@@ -1,6 +1,10 @@
 """`fogproof check`: exit codes, and where its words go."""
 
+import contextlib
 import json
+import os
+import shlex
+import subprocess
 import sys
 
 import pytest
@@ -111,3 +115,24 @@ def test_a_file_has_no_family(tmp_path):
         command, [str(tmp_path / "x.csv"), "--spec", str(tmp_path / "spec.toml")], standalone_mode=False
     )
     assert "samples of one member" in str(result.exception or result.output)
+
+
+def test_a_terminal_is_told_what_is_being_done(tmp_path):
+    (tmp_path / "spec.toml").write_text("reference = 0\nvariance = 0")
+    (tmp_path / "zeros.py").write_text(ZEROS)
+    program = shlex.join([sys.executable, "-S", str(tmp_path / "zeros.py")])
+    words = ["check", "--exec", program, "--spec", str(tmp_path / "spec.toml"), "--samples", "2000"]
+    ours, theirs = os.openpty()
+    done = subprocess.run(
+        [sys.executable, "-m", "fogproof", *words], stdout=subprocess.PIPE, stderr=theirs, check=False
+    )
+    os.close(theirs)
+    with contextlib.suppress(OSError):  # the other end is closed
+        shown = b""
+        while more := os.read(ours, 4096):
+            shown += more
+    os.close(ours)
+    assert done.returncode == 0
+    assert b"realisation 2000 of 2000 at most" in shown
+    assert shown.endswith(b"\r\x1b[K"), "the line is cleared"
+    assert b"\x1b" not in done.stdout

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fogproof.errors import InvalidInputError
+from fogproof.errors import InvalidInputError, InvalidValueError
 from fogproof.pipe.check import Settings, check_file
 from fogproof.pipe.spec import spec_of
 
@@ -97,3 +97,11 @@ def test_keys_of_samplers_are_refused_for_estimators(key):
     }
     with pytest.raises(InvalidInputError, match=f"{key} says something of a sampler, and this is an estimator"):
         spec_of({"reference": 0.5, key: given.get(key, 0.5)}, "spec")
+
+
+def test_a_share_of_a_reference_of_0_is_refused_with_its_fix(tmp_path):
+    np.save(tmp_path / "x.npy", np.random.default_rng().standard_normal(2000))
+    with pytest.raises(InvalidValueError, match=r"absolute part where the reference is 0.*\(0, absolute\)"):
+        check_file(tmp_path / "x.npy", {"reference": 0, "tolerance": 0.01})
+    passed = check_file(tmp_path / "x.npy", {"reference": 0, "tolerance": [0, 0.5]}, Settings(alpha=1e-7)).verdict
+    assert passed.outcome == "not rejected", passed

@@ -99,20 +99,20 @@ int serve(std::initializer_list<const char*> columns) {
     while (detail::line(request)) {
         const Parameters parameters(request);
         const std::size_t n = parameters.whole("n"), k = parameters.whole("columns");
-        in.resize(n * k);
+        in.resize(std::max(in.size(), n * k));  // never smaller: what grows again is filled with zeros first
         if (std::fread(in.data(), sizeof(T), n * k, stdin) != n * k) return 1;
         const S subject(parameters);
         std::size_t per_row = 1;
         if (parameters.asks("pdf")) {
-            out.resize(n);
+            out.resize(std::max(out.size(), n));
             if constexpr (detail::has_pdf<S, T>::value)
                 for (std::size_t i = 0; i < n; ++i) out[i] = subject.pdf(&in[i * k]);
         } else if (parameters.asks("eval")) {
-            per_row = std::max<std::size_t>(weights, 1), out.resize(n * per_row);
+            per_row = std::max<std::size_t>(weights, 1), out.resize(std::max(out.size(), n * per_row));
             if constexpr (detail::has_eval<S, T>::value)
                 for (std::size_t i = 0; i < n; ++i) subject.eval(&in[i * k], &out[i * per_row]);
         } else {
-            per_row = width, out.resize(n * width);
+            per_row = width, out.resize(std::max(out.size(), n * width));
             if constexpr (detail::takes_uniforms<S, T>::value) {
                 for (std::size_t i = 0; i < n; ++i) subject.sample(&in[i * k], &out[i * width]);
             } else {

@@ -26,6 +26,7 @@ from fogproof.checks.streams import batch_sizes, growing_sizes
 from fogproof.checks.subject import UNIT_ROUNDOFF, Precision
 from fogproof.checks.verdict import Finding, Verdict
 from fogproof.contracts import Reference
+from fogproof.doing import doing
 from fogproof.errors import InvalidValueError
 from fogproof.validate import number
 
@@ -95,6 +96,7 @@ def check_estimator(
             stderr = None if draws.stderr is None else column(draws.stderr)
             seen = Observed.of(quantities_of(reference, declared, stderr), draws, labels)
         before, seen = seen.n, seen.after(draws, calls)
+        doing(f"realisation {seen.n} of {samples} at most")
         due = [share for size, share in looks.items() if before < size <= seen.n]
         complete = seen.n == samples
         if seen.bad or due or complete:

@@ -6,14 +6,16 @@ import hashlib
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from inspect import signature
 from typing import Any
 
 from fogproof.checks.estimator import check_estimator
-from fogproof.checks.sampler import check_sampler
+from fogproof.checks.sampler import check_sampler, explained, sampler_check
 from fogproof.checks.subject import call
 from fogproof.checks.verdict import Finding, Verdict
-from fogproof.errors import FogproofError, InvalidValueError
+from fogproof.doing import on_behalf_of
+from fogproof.errors import FogproofError, InvalidValueError, shorten
 
 Doubt = tuple[bool, float]
 """What members are sorted by, the doubtful ones first."""
@@ -35,6 +37,7 @@ class Search:
     budget: int
     drawn: int = 0
     tried: dict[str, tuple[Any, Verdict]] = field(default_factory=dict)
+    explaining: dict[str, Callable[[Verdict], Verdict]] = field(default_factory=dict)
     simplest: tuple[Any, Verdict] | None = None
 
     def judge(self, parameter: Any, samples: int, alpha: float) -> Verdict:
@@ -42,7 +45,9 @@ class Search:
         words = f"{self.seed}/{parameter!r}/{samples}".encode()
         seed = int.from_bytes(hashlib.blake2b(words, digest_size=7).digest(), "little")
         try:
-            verdict = _check(call("make(parameter)", self.make, parameter), samples, alpha, seed, self.options)
+            with on_behalf_of(f"{len(self.tried) + 1}. {shorten(parameter)}"):
+                member = call("make(parameter)", self.make, parameter)
+                verdict, self.explaining[repr(parameter)] = _check(member, samples, alpha, seed, self.options)
         except FogproofError as error:
             if isinstance(error, InvalidValueError) and self._of_the_caller(error):
                 raise
@@ -53,6 +58,11 @@ class Search:
             self.simplest = (parameter, verdict)
         return verdict
 
+    def explained(self, parameter: Any, verdict: Verdict) -> Verdict:
+        """Return the verdict on a member with its cause, which is looked for where the search ends, and not on its way."""
+        with on_behalf_of(shorten(parameter)):
+            return self.explaining.get(repr(parameter), _as_it_is)(verdict)
+
     def _of_the_caller(self, error: InvalidValueError) -> bool:
         """Return whether all members alike are refused: by an option, by one that an option lacks, or for what `make` makes."""
         if error.argument == "make":
@@ -60,18 +70,27 @@ class Search:
         return bool(self.options) and error.argument in _OPTIONS
 
 
-def _check(member: Any, samples: int, alpha: float, seed: int, options: Mapping[str, Any]) -> Verdict:
+def _as_it_is(verdict: Verdict) -> Verdict:
+    return verdict
+
+
+def _check(
+    member: Any, samples: int, alpha: float, seed: int, options: Mapping[str, Any]
+) -> tuple[Verdict, Callable[[Verdict], Verdict]]:
+    """Return the verdict on a member, and what finds the cause of a rejection."""
     if hasattr(member, "draw"):
         if not hasattr(member, "reference"):
             raise InvalidValueError("make", "must return estimators that have a `reference`", type(member).__name__)
         more = {**getattr(member, "options", {}), **options}
-        return check_estimator(member.draw, member.reference, samples=samples, alpha=alpha, seed=seed, **more)
+        return check_estimator(
+            member.draw, member.reference, samples=samples, alpha=alpha, seed=seed, **more
+        ), _as_it_is
     lacking = [name for name in ("sample", "pdf", "domain", "dimensions") if not hasattr(member, name)]
     if lacking:
         rule = "must return estimators (draw, reference) or samplers (sample, pdf, domain, dimensions)"
         raise InvalidValueError("make", f"{rule}; {lacking[0]} is missing", type(member).__name__)
     own = {name: getattr(member, name) for name in ("atoms", "eval") if getattr(member, name, None) is not None}
-    return check_sampler(
+    check = sampler_check(
         member.sample,
         member.pdf,
         member.domain,
@@ -81,6 +100,7 @@ def _check(member: Any, samples: int, alpha: float, seed: int, options: Mapping[
         seed=seed,
         **{**own, **getattr(member, "options", {}), **options},
     )
+    return check.unexplained(), partial(explained, check.prepared.subject)
 
 
 def _failed(error: FogproofError, alpha: float, seed: int) -> Verdict:

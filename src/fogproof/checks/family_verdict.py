@@ -15,7 +15,8 @@ def verdict_of(search: Search, alpha: float, seconds: float) -> Verdict:
     """Return the verdict of a whole search: the simplest member that is rejected, or what all that were tried say."""
     tried = list(search.tried.values())
     if search.simplest is not None:
-        parameter, found = search.simplest
+        parameter, rejected = search.simplest
+        found = search.explained(parameter, rejected)
         wrong = sum(verdict.outcome == "rejected" for _, verdict in tried)
         message = f"wrong at {parameter!r}, the simplest of {wrong} rejected{_where(tried)}"
         p = min((f.p_value for f in found.findings if f.outcome == "rejected" and f.p_value is not None), default=None)

@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from fogproof.checks.digits import digits_of, rounded
+from fogproof.checks.digits import rounded
 from fogproof.checks.subject import Subject, call, in_domain, named, nudged, rounding_spread
+from fogproof.checks.telling import few_digits, nearly, ratio_of, relation
 from fogproof.checks.verdict import Finding
 from fogproof.contracts import Draw
 from fogproof.domains import Discrete
@@ -40,11 +41,6 @@ _TELLING = {
 }
 """Words of an example that say more than the name of the promise."""
 
-_ENOUGH = 16  # densities that tell how they are wrong
-_ROUNDED = (
-    1 / 128
-)  # of a step: domains forgive the length of a vector 512 times its slack, and a rounded one is off by 4 steps
-_VARIES = 1e-3  # relative: what is plainly no rounding
 _USUAL = 4.0  # times the median: noise has tails
 
 
@@ -95,7 +91,7 @@ class Watch:
         """Check one batch; return (n,) which samples are good points of the continuous part, and (good,) the pdf there."""
         subject, x = self.subject, draw.x
         within = inside(subject, draw)
-        few = _few_digits(subject, x[~within])
+        few = few_digits(subject, x[~within]) or nearly(subject, x[~within])
         self._note("domain", ~within, lambda i: f"x = {shorten(x[i])} is not a point of {subject.domain}{few}", len(x))
         good = within
         if subject.atoms:
@@ -155,14 +151,12 @@ class Watch:
             differ[differ] = ~(np.abs(got[differ] - p[differ]) <= _with_usual_noise(slack, p[differ]))
         why = ""
         if differ.any():
-            why = rounded(subject.density, x[at[differ]], got[differ], p[differ], x) or _relation(
-                got[differ], p[differ]
-            )
+            why = rounded(subject.density, x[at[differ]], got[differ], p[differ], x) or relation(got[differ], p[differ])
         self._note(
             "returned pdf",
             differ,
             lambda i: (
-                f"sample returned {got[i]:.9g}, pdf(x) is {p[i]:.9g} at x = {shorten(x[at[i]])}{_ratio(got[i], p[i])}{why}"
+                f"sample returned {got[i]:.9g}, pdf(x) is {p[i]:.9g} at x = {shorten(x[at[i]])}{ratio_of(got[i], p[i])}{why}"
             ),
             len(at),
         )
@@ -245,15 +239,6 @@ def _within(subject: Subject, x: np.ndarray) -> np.ndarray:
     return law.place(np.clip(law.coordinates(x, np.full((len(x), len(law.axes)), 0.5)), edge, 1 - edge))
 
 
-def _few_digits(subject: Subject, x: np.ndarray) -> str:
-    """Return in words that points lie outside of the domain only because few digits of them are printed; "" if not so."""
-    digits = digits_of(x) if x.ndim > 1 and len(x) else None
-    if digits is None:
-        return ""
-    slack = _ROUNDED * (digits.relative + digits.absolute)
-    return f"; {digits.words}" if bool(np.all(subject.domain.contains(x, slack))) else ""
-
-
 def _with_usual_noise(slack: np.ndarray, value: np.ndarray) -> np.ndarray:
     """Return the slack of each value, or that of a usual one where it is larger.
 
@@ -268,33 +253,3 @@ def _with_usual_noise(slack: np.ndarray, value: np.ndarray) -> np.ndarray:
 
 def _quote(what: str, values: np.ndarray, rest: str) -> Callable[[int], str]:
     return lambda i: f"{what} {values[i]:.9g} {rest}"
-
-
-def _relation(got: np.ndarray, right: np.ndarray) -> str:
-    """Return in words what all returned densities have to do with those that are claimed, if it is plain."""
-    if len(got) < _ENOUGH:
-        return ""
-    with np.errstate(all="ignore"):
-        others = {}
-        if np.ptp(right) > _VARIES * np.max(np.abs(right)):  # a constant is the same as many a function of it
-            others = {"its logarithm is returned": np.log(right), "one over it is returned": 1 / right}
-        ratio = float(np.median(got / right))
-        if np.isfinite(ratio) and ratio > 0 and abs(ratio - 1) > _VARIES:
-            others[f"{ratio:.6g} times it is returned"] = ratio * right
-        found = [
-            words for words, value in others.items() if np.all(np.abs(got - value) <= 1e-5 * np.abs(value) + 1e-12)
-        ]
-    return f"; everywhere {found[0]}" if found else ""
-
-
-def _ratio(got: float, right: float) -> str:
-    """Return in words a telling ratio of the returned to the claimed density, if it is one."""
-    for name, factor in (
-        ("2 pi", 2 * np.pi),
-        ("4 pi", 4 * np.pi),
-        ("1/(2 pi)", 0.5 / np.pi),
-        ("1/(4 pi)", 0.25 / np.pi),
-    ):
-        if right > 0 and abs(got / right / factor - 1) < 1e-6:
-            return f" ({name} times pdf)"
-    return ""

@@ -105,8 +105,8 @@ def quantities_of(
                 "must be possible within the declared bounds: (high - mean) (mean - low) at most (Bhatia & Davis 2000)"
             )
             require("variance", v, possible, rule, f"that is {float(most.min()):.6g}")
-        # (X - r)^2 has expectation V + (mean - r)^2, and |mean - r| <= error.
-        v_error = v_error + error**2
+        # (X - r)^2 has expectation V + (mean - r)^2, and |mean - r| <= error; what of that is tolerated is no doubt of V.
+        v_own, v_error = v_error + own**2, v_error + error**2
         largest = np.maximum((high - value) ** 2, (value - low) ** 2)
         squares = tuple(Known(low=0.0, high=float(one), light=declared.light) for one in largest)
         more.append(
@@ -117,6 +117,7 @@ def quantities_of(
                 v_error,
                 "wrong variance",
                 squares,
+                v_own,
                 ways=_WITHOUT_VARIANCE,
             )
         )

@@ -13,13 +13,14 @@ import time
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from inspect import signature
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from fogproof.checks.declared import declared, unchecked
-from fogproof.checks.diagnosis import diagnosed
+from fogproof.checks.diagnosis import diagnosed, likely_cause
 from fogproof.checks.escalation import EARLY, Stage, doubtful, judged, stages, total_weight
 from fogproof.checks.figures import bins_figure, z_map_figure
 from fogproof.checks.prepared import Prepared
@@ -31,7 +32,10 @@ from fogproof.checks.suite import tests_of
 from fogproof.checks.tally import Tally
 from fogproof.checks.verdict import Finding, Verdict
 from fogproof.contracts import Reference
+from fogproof.doing import doing
 from fogproof.domains import Domain
+
+_PATIENCE = 20.0  # seconds
 
 
 def check_sampler(
@@ -87,33 +91,42 @@ def check_sampler(
     `breaks`, `support` and `inverse` are hints: they make a check sharper where a pdf jumps, and change no verdict if they are
     wrong. A hint that the pdf contradicts is not used, and the verdict says so in `unchecked`.
     """
-    check = SamplerCheck.of(
-        Subject(
-            sample,
-            pdf,
-            domain,
-            dimensions,
-            dict(atoms or {}),
-            cdf,
-            eval,
-            axis,
-            mean_cosine,
-            albedo,
-            reference,
-            precision,
-            dict(events or {}),
-            uniform_bits,
-            quasi_random,
-            {} if breaks is None else breaks,
-            support,
-            inverse,
-        ),
-        resolution,
-        samples,
-        alpha,
-        seed,
+    check = sampler_check(
+        sample,
+        pdf,
+        domain,
+        dimensions=dimensions,
+        atoms=atoms,
+        cdf=cdf,
+        eval=eval,
+        axis=axis,
+        mean_cosine=mean_cosine,
+        albedo=albedo,
+        reference=reference,
+        precision=precision,
+        events=events,
+        uniform_bits=uniform_bits,
+        quasi_random=quasi_random,
+        breaks=breaks,
+        support=support,
+        inverse=inverse,
+        resolution=resolution,
+        samples=samples,
+        alpha=alpha,
+        seed=seed,
     )
     return check.run()
+
+
+def sampler_check(*arguments: Any, **options: Any) -> SamplerCheck:
+    """Return the check that `check_sampler` runs, for the same arguments."""
+    given = signature(check_sampler).bind(*arguments, **options).arguments
+    given |= {name: dict(given.get(name) or {}) for name in ("atoms", "events")}
+    settings: dict[str, Any] = {"resolution": None, "samples": 1_000_000, "alpha": 1e-6, "seed": None}
+    settings |= {name: given.pop(name) for name in settings if name in given}
+    needed = ("sample", "pdf", "domain", "dimensions")
+    parts = {name: value for name, value in given.items() if value is not None or name in needed}
+    return SamplerCheck.of(Subject(**parts), **settings)
 
 
 @dataclass(frozen=True)
@@ -135,6 +148,7 @@ class SamplerCheck:
         """Validate the arguments, those of `check_sampler`, and ask all questions that need no samples."""
         started = time.perf_counter()
         subject, samples, seed = declared(subject, resolution, samples, alpha, seed)
+        doing("questions that need no samples")
         with np.errstate(all="ignore"):  # what is infinite or undefined is found, not warned of
             prepared = prepare(subject, samples, seed)
         weight = total_weight(tests_of(prepared, prepared.counter.empty()))
@@ -156,6 +170,7 @@ class SamplerCheck:
         tally = self.prepared.counter.empty()
         with np.errstate(all="ignore"):
             for index in batches:
+                doing(f"sample {sum(self.sizes[:index])} of {self.prepared.samples} at most")
                 draw = self.prepared.subject.draw(batch_generator(self.seed, "samples", 1, index), self.sizes[index])
                 tally = tally.merged(self.prepared.counter.tally(draw, index))
         return tally
@@ -172,10 +187,14 @@ class SamplerCheck:
         if not whole and all(f.outcome != "rejected" for f in findings):
             message = f"{len(tally.batches)} of {self.batches} batches are drawn"
             findings.append(Finding("all batches", "inconclusive", message))
-        return self._verdict(findings, tally)
+        return explained(self.prepared.subject, self._verdict(findings, tally))
 
     def run(self) -> Verdict:
-        """Draw and judge, look by look, until something is rejected or nothing is doubtful."""
+        """Draw and judge, look by look, until something is rejected or nothing is doubtful, and look for the cause."""
+        return explained(self.prepared.subject, self.unexplained())
+
+    def unexplained(self) -> Verdict:
+        """Return the same with no other word of its cause than the findings'."""
         tally, findings = self.prepared.counter.empty(), []
         for look in self.looks:
             enough = int(np.searchsorted(np.cumsum(self.sizes), look.samples)) + 1
@@ -205,7 +224,6 @@ class SamplerCheck:
         )
         seconds = time.perf_counter() - self.started
         pilot = self.prepared.pilot
-        cause, diagnosis = diagnosed(subject, findings, tally.drawn, self.seed)
         return Verdict(
             tuple(findings),
             self.alpha,
@@ -213,11 +231,17 @@ class SamplerCheck:
             self.seed,
             seconds,
             settings,
-            cause,
+            likely_cause(findings),
             reproduce,
-            diagnosis=diagnosis,
             unchecked=(*unchecked(subject, pilot.channels, bool(pilot.labels)), *self.prepared.disbelieved),
         )
+
+
+def explained(subject: Subject, verdict: Verdict) -> Verdict:
+    """Return a verdict with the cause that explains its rejection; the search for it takes no longer than the check, or 20 s."""
+    patience = max(verdict.seconds, _PATIENCE)
+    cause, diagnosis = diagnosed(subject, verdict.findings, verdict.samples, verdict.seed, patience)
+    return replace(verdict, cause=cause, diagnosis=diagnosis)
 
 
 def judge(prepared: Prepared, tally: Tally, alpha: float, final: bool = True) -> list[Finding]:

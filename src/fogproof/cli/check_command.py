@@ -7,7 +7,7 @@ import json
 import click
 
 from fogproof.checks.json_values import jsonable
-from fogproof.cli.terminal import say
+from fogproof.cli.terminal import say, what_is_done
 from fogproof.cli.values import POSITIVE, PROBABILITY, SECONDS
 from fogproof.pipe.check import Checked, Settings, check_file, check_program
 from fogproof.pipe.process import Timeouts
@@ -61,11 +61,9 @@ def command(
     if (file is None) == (program is None):
         raise click.UsageError("give either a FILE of samples or --exec COMMAND")
     settings = Settings(samples, resolution, alpha, seed)
-    if program is not None:
-        outcome = check_program(program, spec, settings, Timeouts(start_timeout, timeout, end_timeout))
-    else:
-        assert file is not None
-        outcome = check_file(file, spec, settings)
+    timeouts = Timeouts(start_timeout, timeout, end_timeout)
+    with what_is_done():
+        outcome = check_file(file, spec, settings) if file else check_program(str(program), spec, settings, timeouts)
     _tell(outcome, as_json)
     return _CODES[outcome.verdict.outcome]
 

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import os
 import sys
+import time
+from collections.abc import Iterator
 from typing import BinaryIO, TextIO
 
 import click
 
+from fogproof.doing import heard_by
 from fogproof.errors import InvalidInputError
-from fogproof.text import visible
+from fogproof.text import one_line, visible
 
 FAULT = 70
 """Exit code after a fault of our own."""
@@ -22,6 +26,8 @@ UNREAD = 141
 """The exit code where nobody reads stdout: 128 + SIGPIPE, as a shell tells it."""
 
 _CODE = "fogproof.code"
+_NARROW = 80  # columns of a terminal that does not say
+_SHOWN = 0.2  # seconds that a line stands at least
 
 
 def say(text: object = "", err: bool = False) -> None:
@@ -44,6 +50,40 @@ def say(text: object = "", err: bool = False) -> None:
         context.meta[_CODE] = UNREAD if unread else BAD_INPUT
         if not unread:
             say(f"fogproof: cannot write to stdout: {error.strerror or error}", err=True)
+
+
+@contextlib.contextmanager
+def what_is_done() -> Iterator[None]:
+    """Show on one line of stderr what is being done, where that is a terminal, and clear the line at the end."""
+    if not sys.stderr.isatty():
+        yield
+        return
+    shown = -math.inf
+
+    def show(what: str) -> None:
+        nonlocal shown
+        if time.monotonic() - shown >= _SHOWN:
+            shown = time.monotonic()
+            _draw(one_line(what)[: _columns() - 1])
+
+    try:
+        with heard_by(show):
+            yield
+    finally:
+        _draw("")
+
+
+def _columns() -> int:
+    try:
+        return os.get_terminal_size(sys.stderr.fileno()).columns or _NARROW
+    except OSError:
+        return _NARROW
+
+
+def _draw(line: str) -> None:
+    with contextlib.suppress(OSError):
+        sys.stderr.write(f"\r\x1b[K{line}")
+        sys.stderr.flush()
 
 
 def code_of_stdout(context: click.Context) -> int:

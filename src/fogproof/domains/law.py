@@ -48,7 +48,7 @@ class Domain(Protocol):
     def contains(self, x: np.ndarray, slack: float) -> np.ndarray:
         """Return (n,) which points lie in the domain, up to rounding errors of relative size `slack`; NaN never does.
 
-        Ends forgive `at_the_ends(slack)` of the domain's own size.
+        Ends forgive `at_the_ends(slack)` of the domain's own size; where it has none, of that of the points.
         """
 
     def law(self, pilot: np.ndarray) -> Law:

@@ -54,10 +54,11 @@ class Tail:
             return np.asarray(self.b / (self.m * s * (1 + power) * (1 + 1 / power)))
 
 
-def _bounded(low: float, high: float, x: np.ndarray, slack: float) -> np.ndarray:
-    scale = max((abs(end) for end in (low, high) if math.isfinite(end)), default=0.0)
-    room = max(slack * scale, at_the_ends(slack) * min(high - low, 2 * scale))
-    return np.isfinite(x) & (x >= low - room) & (x <= high + room)
+def _typical(t: np.ndarray) -> float:
+    """Return the lower quartile of the distances t that are positive, 0 where most are not: the size of what has no other."""
+    t = t[np.isfinite(t)]
+    positive = t[t > 0]
+    return float(np.quantile(positive, 0.25, method="lower")) if len(t) and 2 * len(positive) >= len(t) else 0.0
 
 
 @dataclass(frozen=True)
@@ -84,7 +85,9 @@ class Interval:
 
     def contains(self, x: np.ndarray, slack: float) -> np.ndarray:
         """Return which numbers lie between the ends."""
-        return _bounded(self.a, self.b, x, slack)
+        scale, length = max(abs(self.a), abs(self.b)), self.b - self.a
+        room = max(slack * scale, at_the_ends(slack) * length)
+        return np.isfinite(x) & (x >= self.a - room) & (x <= self.b + room)
 
     def law(self, pilot: np.ndarray) -> Law:
         """Return the uniform law."""
@@ -110,8 +113,9 @@ class HalfLine:
         object.__setattr__(self, "a", number("a", self.a, "must be finite", fix="use RealLine"))
 
     def contains(self, x: np.ndarray, slack: float) -> np.ndarray:
-        """Return which numbers are finite and no less than a."""
-        return _bounded(self.a, math.inf, x, slack)
+        """Return which numbers are finite and no less than a; the domain's size is |a|, or that of the distances x - a."""
+        size = max(abs(self.a), _typical(x - self.a))
+        return np.isfinite(x) & (x >= self.a - at_the_ends(slack) * size)
 
     def law(self, pilot: np.ndarray) -> Law:
         """Return a log-logistic law of the distance from a."""

@@ -13,6 +13,7 @@ from fogproof.checks.diagnosis.contrast import Contrast, Fit, claimed
 from fogproof.checks.diagnosis.factors import named_factor
 from fogproof.checks.diagnosis.fitting import Explained, likeliest, nearest, sharpened
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting
+from fogproof.checks.diagnosis.patience import OutOfTimeError, limited
 from fogproof.checks.diagnosis.points import single_points
 from fogproof.checks.statistics.repeats import KEPT
 from fogproof.checks.streams import batch_generator
@@ -45,11 +46,15 @@ _FITS = 0.98  # the same of a law that has nothing to do with the claim
 _EXPLAINS = 0.9  # of the misfit: a hypothesis that explains less is not told
 
 
-def diagnosed(subject: Subject, findings: Sequence[Finding], samples: int, seed: int) -> tuple[str, str]:
+def diagnosed(
+    subject: Subject, findings: Sequence[Finding], samples: int, seed: int, seconds: float = math.inf
+) -> tuple[str, str]:
     """Return the likely cause of a rejection, and in words what explains the misfit; both "" if nothing was rejected.
 
     samples  how many samples the verdict is of: not many more are drawn to explain it
+    seconds  after which the subject is asked no more; the cause is then what the findings say
     """
+    subject = limited(subject, seconds)
     cause = likely_cause(findings)
     statistical = any(f.outcome == "rejected" and f.p_value is not None and f.cause in _STATISTICAL for f in findings)
     if cause == "negative pdf":
@@ -65,6 +70,8 @@ def diagnosed(subject: Subject, findings: Sequence[Finding], samples: int, seed:
                 if named == "clamped" or cause == "atom":
                     return named or cause, words
                 return _searched(subject, cause, findings, samples, seed)
+        except OutOfTimeError:
+            return cause, f"the search for what explains it was ended after {seconds:.0f} s"
         except (
             Exception
         ):  # the user's density is asked at points that no sampler gave: a verdict is worth more than its cause

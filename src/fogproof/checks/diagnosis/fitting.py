@@ -9,6 +9,7 @@ import numpy as np
 
 from fogproof.checks.diagnosis.contrast import Fit
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting
+from fogproof.doing import doing
 
 _SCREENED = 1 << 12  # samples on which all hypotheses are tried first, with a few parameters each
 _TRIED = 12  # of them that are fitted closer, on as many samples as show the misfit
@@ -44,6 +45,7 @@ def likeliest(setting: Setting, base: Fit, hypotheses: list[Hypothesis]) -> Expl
     )
     tried = []
     for order, hypothesis in enumerate(hypotheses):
+        doing(f"looking for the cause: is it that {hypothesis.words.replace('{value}', '...')}?")
         values = hypothesis.trials or (0.0,)
         try:
             scores = [_likelihood(small, hypothesis, value) for value in values]
@@ -57,6 +59,7 @@ def likeliest(setting: Setting, base: Fit, hypotheses: list[Hypothesis]) -> Expl
     tried.sort(key=lambda one: one[:2], reverse=True)
     closer = []
     for score, order, hypothesis, value, room in tried[:_TRIED]:
+        doing(f"looking closer: is it that {hypothesis.words.replace('{value}', f'{value:.4g}')}?")
         if hypothesis.trials:
             value, score = _fitted(middle, hypothesis, value - room, value + room, 12)
         else:
