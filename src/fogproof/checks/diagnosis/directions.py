@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from fogproof.checks.diagnosis import grids
 from fogproof.checks.diagnosis.contrast import Density
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting, known_number, of_points
 
@@ -72,6 +73,7 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
         (0.5, 0.7, 1.5, 2.0, 3.0),
         known_number({2.0: "a square root of the cosine is missing", 0.5: "a square root too many"}),
     )
+    yield from grids.of_directions(setting)
     yield from _lobes(setting)
 
 
