@@ -1,7 +1,7 @@
 """What goes wrong with a density that is a table: shifted by columns or rows, mirrored, transposed, without the areas of its rows.
 
-A table of few cells jumps by much where it is shifted by one: whole cells of tables of up to 12 columns are tried, and small
-shares. On the sphere rows follow theta from +z, columns phi from +x, as in an environment map (Pharr, Jakob & Humphreys 2023,
+A table of few cells jumps by much where it is shifted by one: whole cells of tables of up to 12 or of 16 columns are tried, and
+small shares. On the sphere rows follow theta from +z, columns phi from +x, as in an environment map (Pharr, Jakob & Humphreys 2023,
 section 12.5).
 """
 
@@ -14,7 +14,7 @@ import numpy as np
 
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting, of_points
 
-_CELLS = (0.5, 1 / 3, 0.25, 0.2, 1 / 6, 0.125, 0.1, 1 / 12)
+_CELLS = (0.5, 1 / 3, 0.25, 0.2, 1 / 6, 0.125, 0.1, 1 / 12, 1 / 16)
 _SMALL = (0.05, 0.02, 0.01, 0.003)
 SHIFTS = tuple(sorted({sign * share for share in (*_CELLS, *_SMALL) for sign in (-1, 1)} - {-0.5}))
 """Shares of an axis that a table may be shifted round by: whole cells of small ones, and what lies between those of large ones."""
