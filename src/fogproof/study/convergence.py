@@ -10,7 +10,14 @@ import numpy as np
 
 CONFIDENCE = 0.99
 """Of every interval in a record."""
-Z = NormalDist().inv_cdf((1 + CONFIDENCE) / 2)
+
+
+def deviations(confidence: float) -> float:
+    """Return how many standard deviations on either side hold so much of a normal law."""
+    return NormalDist().inv_cdf((1 + confidence) / 2)
+
+
+Z = deviations(CONFIDENCE)
 ABOVE = 20.0
 """Errors count towards an order where they are so many times what rounding and the reference may hide."""
 _LEAST_NOISY, _LEAST_SMOOTH = 3, 4

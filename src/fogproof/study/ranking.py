@@ -7,7 +7,7 @@ from dataclasses import asdict
 from itertools import groupby
 from typing import Any
 
-from fogproof.study.convergence import Estimate
+from fogproof.study.convergence import CONFIDENCE, Estimate
 from fogproof.study.judgement import BY_BIAS
 from fogproof.study.measures import Measured
 from fogproof.study.methods.own import Own
@@ -22,8 +22,11 @@ _SHOWN = 3
 def ranked(scene: Sequence[Measured]) -> dict[str, Any]:
     """Return the ranking of a scene's estimators, the soonest, and some sentences; writes ranks and relative speeds.
 
-    Those that do not reach the first target within their counts follow, the nearest first; last those without a curve.
+    Those that do not reach the first target within their counts follow, the nearest first; last those without a curve. The
+    intervals of a scene's relative speeds hold all at once: whoever comes out first, its ratio to any other is one of all pairs'
+    (Bonferroni 1936).
     """
+    sure = _of_all_pairs(scene)
     order = sorted((m for m in scene if m.reaches), key=_key)
     reaching = [m for m in order if _reaches(m, _AT)]
     unbiased = [m for m in reaching if m.unbiased]
@@ -31,7 +34,7 @@ def ranked(scene: Sequence[Measured]) -> dict[str, Any]:
     for m in scene:
         speed = m.record["speed"]
         if speed is not None:
-            relative = None if first is None or not m.reaches else first.reaches[_AT].relative_to(m.reaches[_AT])
+            relative = None if first is None or not m.reaches else first.reaches[_AT].relative_to(m.reaches[_AT], sure)
             relative = Estimate(1.0, 1.0, 1.0) if m is first else relative
             speed["rank"] = order.index(m) + 1 if m in reaching else None
             speed["relative"] = None if relative is None else asdict(relative)
@@ -40,8 +43,14 @@ def ranked(scene: Sequence[Measured]) -> dict[str, Any]:
         "best_unbiased": unbiased[0].cell.name if unbiased else None,
         "ranking": [m.cell.name for m in order],
         "unranked": [m.cell.name for m in scene if not m.reaches],
-        "text": " ".join(_sentences(scene)),
+        "text": " ".join(_sentences(scene, sure)),
     }
+
+
+def _of_all_pairs(scene: Sequence[Measured]) -> float:
+    """Return the confidence that each pair is compared with, so that all of them hold with `CONFIDENCE`."""
+    n = sum(bool(m.reaches) for m in scene)
+    return 1 - (1 - CONFIDENCE) / max(1, n * (n - 1) // 2)
 
 
 def _reaches(m: Measured, target: int) -> bool:
@@ -54,7 +63,7 @@ def _key(m: Measured) -> tuple[int, float]:
     return 1, m.record["counts"][-1]["rmse"]
 
 
-def _sentences(scene: Sequence[Measured]) -> list[str]:
+def _sentences(scene: Sequence[Measured], sure: float) -> list[str]:
     if not any(m.reaches for m in scene):
         zero = all(float(m.cell.reference.value) == 0 for m in scene)
         return [
@@ -62,8 +71,8 @@ def _sentences(scene: Sequence[Measured]) -> list[str]:
             if zero
             else "Nothing has been measured that could be compared."
         ]
-    said = _soonest(scene, "")
-    firsts = [m for m in _firsts(scene) if m is not None]
+    said = _soonest(scene, "", sure)
+    firsts = [m for m in _firsts(scene, sure) if m is not None]
     if not firsts:
         nearest = min((m for m in scene if m.reaches), key=_key)
         last = nearest.record["counts"][-1]
@@ -73,8 +82,8 @@ def _sentences(scene: Sequence[Measured]) -> list[str]:
     biased = list(dict.fromkeys(m for m in firsts if not m.unbiased))
     if biased:
         said += [f"{_first(m)} {_why_not_unbiased(m)}." for m in biased]
-        said += _soonest([m for m in scene if m.unbiased], "Of the unbiased, ")
-    said += _compared(scene)
+        said += _soonest([m for m in scene if m.unbiased], "Of the unbiased, ", sure)
+    said += _compared(scene, sure)
     said += [_marched(m) for m in scene if m.cell.method.axis == "steps" and m.record["counts"]]
     untimed = [_inside(m) for m in scene if m.reaches and m.reaches[_AT].untimed]
     if untimed:
@@ -89,7 +98,7 @@ def _sentences(scene: Sequence[Measured]) -> list[str]:
     return said
 
 
-def _firsts(scene: Sequence[Measured]) -> list[Measured | None]:
+def _firsts(scene: Sequence[Measured], sure: float) -> list[Measured | None]:
     """Return who is soonest to each of `TARGETS`: the same as to the one before, unless another is shown to be sooner."""
     found: list[Measured | None] = []
     before: Measured | None = None
@@ -97,17 +106,18 @@ def _firsts(scene: Sequence[Measured]) -> list[Measured | None]:
         there = [m for m in scene if _reaches(m, target)]
         first = min(there, key=lambda m: m.reaches[target].times.estimate.value, default=None)
         if first is not None and before is not None and _reaches(before, target):
-            ratio = before.reaches[target].relative_to(first.reaches[target])
+            ratio = before.reaches[target].relative_to(first.reaches[target], sure)
             first = before if ratio is None or not ratio.low > 1 else first
         found.append(first)
         before = first
     return found
 
 
-def _soonest(scene: Sequence[Measured], lead: str) -> list[str]:
-    """Return who is soonest to each error, and in what time; and where the counts do not tell."""
+def _soonest(scene: Sequence[Measured], lead: str, sure: float) -> list[str]:
+    """Return who is soonest to each error, in what time, and who is not to be told from it; and where the counts do not tell."""
     parts, untold = [], []
-    for first, group in groupby(zip(_firsts(scene), range(len(TARGETS)), strict=True), key=lambda pair: pair[0]):
+    firsts = [(first, _beside(scene, first, target, sure)) for target, first in enumerate(_firsts(scene, sure))]
+    for (first, beside), group in groupby(zip(firsts, range(len(TARGETS)), strict=True), key=lambda pair: pair[0]):
         if first is None:
             continue
         told: dict[str, list[str]] = {}
@@ -117,9 +127,9 @@ def _soonest(scene: Sequence[Measured], lead: str) -> list[str]:
             else:
                 told.setdefault(_time(first.reaches[target]), []).append(_percent(TARGETS[target]))
         if told:
-            parts.append(
-                f"{_inside(first)} is soonest: {', '.join(f'{_listed(e)} in {time}' for time, e in told.items())}"
-            )
+            place = f"first, though not to be told from {_some(beside)}" if beside else "soonest"
+            times = ", ".join(f"{_listed(errors)} in {time}" for time, errors in told.items())
+            parts.append(f"{_inside(first)} is {place}: {times}")
     text = lead + "; ".join(parts)
     said = [f"{text[:1].upper() + text[1:]}."] if parts else []
     for waiting, targets in groupby(untold, key=lambda pair: pair[1]):
@@ -128,6 +138,16 @@ def _soonest(scene: Sequence[Measured], lead: str) -> list[str]:
         asked = f"{lead}who" if lead else "Who"
         said.append(f"{asked} is soonest to {errors} these counts do not tell: {late}.")
     return said
+
+
+def _beside(scene: Sequence[Measured], first: Measured | None, target: int, sure: float) -> list[Measured]:
+    """Return those that come to an error in a time that may be the first's as well."""
+    if first is None:
+        return []
+    there = [
+        (m, m.reaches[target].relative_to(first.reaches[target], sure)) for m in scene if m.reaches and m is not first
+    ]
+    return [m for m, ratio in there if ratio is not None and not ratio.low > 1]
 
 
 def _may_be_sooner(scene: Sequence[Measured], first: Measured, target: int) -> list[Measured]:
@@ -143,25 +163,20 @@ def _why_not_unbiased(m: Measured) -> str:
     return "was rejected" if m.status == "rejected" else "is not judged unbiased yet"
 
 
-def _compared(scene: Sequence[Measured]) -> list[str]:
+def _compared(scene: Sequence[Measured], sure: float) -> list[str]:
     """Return how many times as long others take that came out unbiased, to the first target."""
     there = sorted((m for m in scene if m.unbiased and _reaches(m, _AT)), key=_key)
     if len(there) < 2:
         return []
     first, *others = there
-    said, unsure = [], []
+    said = []
     for other in others:
-        ratio = other.reaches[_AT].relative_to(first.reaches[_AT])
-        if ratio is None:
-            continue
-        if ratio.low > 1:
+        ratio = other.reaches[_AT].relative_to(first.reaches[_AT], sure)
+        if ratio is not None and ratio.low > 1:
             most = first.reaches[_AT].how == "less-than"
             times = f"at least {_plain(ratio.low)}" if most else _plain(ratio.value)
             said.append(f"{times} times as fast as {_inside(other)}")
-        else:
-            unsure.append(_inside(other))
-    text = [f"To {_percent(TARGETS[_AT])} {_inside(first)} is {_listed(said[:_SHOWN])}."] if said else []
-    return text + ([f"Not to be told from it there: {_listed(unsure)}."] if unsure else [])
+    return [f"To {_percent(TARGETS[_AT])} {_inside(first)} is {_listed(said[:_SHOWN])}."] if said else []
 
 
 def _marched(m: Measured) -> str:
@@ -207,6 +222,13 @@ def _rejected(m: Measured) -> str:
     """Return the label of what was rejected, and of what it was rejected for if not for a bias."""
     wrong = m.judged.wrong
     return _inside(m) if wrong & BY_BIAS else f"{_inside(m)} ({', '.join(sorted(wrong))})"
+
+
+def _some(scene: Sequence[Measured]) -> str:
+    """Return the labels of a few, and how many more there are."""
+    labels = [_inside(m) for m in scene]
+    more = len(labels) - _SHOWN
+    return _listed(labels if more <= 1 else [*labels[:_SHOWN], f"{more} more"])
 
 
 def _listed(items: Sequence[str]) -> str:

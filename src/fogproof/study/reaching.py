@@ -14,7 +14,7 @@ from typing import Literal
 
 import numpy as np
 
-from fogproof.study.convergence import Estimate, Z
+from fogproof.study.convergence import CONFIDENCE, Estimate, Z, deviations
 from fogproof.study.growth import power_at, time_at, time_beyond
 from fogproof.study.speed import Times, scaled
 
@@ -79,14 +79,13 @@ class Reach:
             return Estimate(own.value, 0.0, scaled(own.value, *_wider(own, self.noise)).high)
         return scaled(own.value, *_wider(own, self.noise))
 
-    def relative_to(self, other: Reach) -> Estimate | None:
+    def relative_to(self, other: Reach, confidence: float = CONFIDENCE) -> Estimate | None:
         """Return how many times as long it takes as another does; None where either is not known."""
         if not (self.reached and other.reached):
             return None
-        ratio = self.times.relative_to(other.times)
-        below, above = _wider(
-            ratio, (math.hypot(self.noise[0], other.noise[1]), math.hypot(self.noise[1], other.noise[0]))
-        )
+        ratio, more = self.times.relative_to(other.times, confidence), deviations(confidence) / Z
+        noise = math.hypot(self.noise[0], other.noise[1]), math.hypot(self.noise[1], other.noise[0])
+        below, above = _wider(ratio, (more * noise[0], more * noise[1]))
         below = math.inf if self.how == "less-than" else below
         above = math.inf if other.how == "less-than" else above
         return scaled(ratio.value, below, above)

@@ -27,12 +27,12 @@ class Times:
         """The geometric mean over the rounds, with Student's interval."""
         return _around(np.log(self.seconds))
 
-    def relative_to(self, other: Times) -> Estimate:
+    def relative_to(self, other: Times, confidence: float = CONFIDENCE) -> Estimate:
         """Return the ratio to another's time, round by round where both have the same rounds."""
         own, others = np.log(self.seconds), np.log(other.seconds)
         if len(own) == len(others) and np.count_nonzero(np.isfinite(own - others)) > 1:
-            return _around(own - others)
-        a, b = _around(own), _around(others)
+            return _around(own - others, confidence)
+        a, b = _around(own, confidence), _around(others, confidence)
         reach = math.hypot(math.log(a.high / a.value), math.log(b.high / b.value))
         return scaled(a.value / b.value, reach, reach)
 
@@ -44,7 +44,7 @@ def scaled(value: float, below: float, above: float) -> Estimate:
     )
 
 
-def _around(logs: np.ndarray) -> Estimate:
+def _around(logs: np.ndarray, confidence: float = CONFIDENCE) -> Estimate:
     from scipy.special import stdtrit
 
     logs = logs[np.isfinite(logs)]
@@ -53,7 +53,7 @@ def _around(logs: np.ndarray) -> Estimate:
     value = math.exp(float(logs.mean()))
     if len(logs) == 1:
         return Estimate(value, 0.0, math.inf)
-    reach = float(stdtrit(len(logs) - 1, (1 + CONFIDENCE) / 2)) * float(logs.std(ddof=1)) / math.sqrt(len(logs))
+    reach = float(stdtrit(len(logs) - 1, (1 + confidence) / 2)) * float(logs.std(ddof=1)) / math.sqrt(len(logs))
     return scaled(value, reach, reach)
 
 

@@ -33,12 +33,14 @@ def of_directions(setting: Setting) -> Iterator[Hypothesis]:
         "these samples fit the pdf turned about z by {value} of a turn, as a table shifted by columns is",
         lambda s, d: lambda x: s.p(_placed(*_rolled(x, 0.0, d))),
         SHIFTS,
+        null=0.0,
     )
     yield Hypothesis(
         "shifted",
         "these samples fit the pdf shifted round by {value} of pi in theta, as a table shifted by rows is",
         lambda s, d: lambda x: s.p(_placed(*_rolled(x, d, 0.0))),
         SHIFTS,
+        null=0.0,
     )
     for weight in (lambda x, y: 1.0, lambda x, y: _sine(y) / _sine(x)):
         words = "these samples fit the pdf with theta / pi and phi / (2 pi) swapped: its table is transposed"
