@@ -178,6 +178,14 @@ def test_broken_files_are_told_in_a_sentence(tmp_path, name, content):
         check_file(tmp_path / name, {**DIRECTIONS, "columns": ["x", "x", "x"]})
 
 
+def test_a_second_array_in_a_file_is_not_passed_over(tmp_path):
+    with open(tmp_path / "x.npy", "wb") as file:
+        np.save(file, directions(400))
+        np.save(file, directions(400, 0.1))
+    with pytest.raises(FogproofError, match="follow the array"):
+        check_file(tmp_path / "x.npy", DIRECTIONS)
+
+
 def test_columns_must_be_named_where_there_are_more(tmp_path):
     path = written(tmp_path / "x.npy", np.ones((500, 4)))
     with pytest.raises(FogproofError, match="name them all"):
