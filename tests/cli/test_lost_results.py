@@ -115,6 +115,18 @@ def test_nothing_to_print_needs_no_stdout(tmp_path):
 
 
 @CLOSED
+@pytest.mark.parametrize("closed", ["2>&-", "2>&- <&-"])
+def test_a_closed_stderr_costs_nothing(tmp_path, closed):
+    samples, spec = tmp_path / "samples.csv", tmp_path / "spec.toml"
+    samples.write_text("".join(f"{(i + 0.5) / 1000 - 1}\n" for i in range(2000)))
+    spec.write_text('domain = { kind = "interval", a = -1, b = 1 }\nphase = { kind = "isotropic" }\n')
+    words = shlex.join([sys.executable, "-m", "fogproof", "check", str(samples), "--spec", str(spec), "--json"])
+    found = [subprocess.run(f"{words} {end}", shell=True, capture_output=True) for end in ("", closed)]
+    assert found[1].returncode == found[0].returncode != 70
+    assert json.loads(found[1].stdout)["outcome"] == json.loads(found[0].stdout)["outcome"]
+
+
+@CLOSED
 def test_help_that_nobody_reads_is_no_rejection():
     reading, writing = os.pipe()
     os.close(reading)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from fogproof.checks.claim import Claim
@@ -13,6 +15,7 @@ from fogproof.checks.subject import Subject, call, numbers
 from fogproof.checks.verdict import Finding
 from fogproof.domains import HalfLine, RealLine
 
+_SAME = 1e-5  # differences of two functions that are meant to be one
 _COMPARED = 1024  # groups of cells in which a given cdf is compared with the pdf
 
 
@@ -46,4 +49,21 @@ def agreement(subject: Subject, claim: Claim, given: Marginal) -> Finding:
     scale = 1 - sum(subject.atoms.values())
     right = np.diff(own.cdf[at]) * claim.leaves.total
     slack = own.doubt(at[:-1], at[1:]) + FLOOR[subject.precision] + claim.rounding
-    return cdf_agreement(np.diff(given.cdf[at]) * scale, right, slack, own.shown[at[1:]])
+    finding = cdf_agreement(np.diff(given.cdf[at]) * scale, right, slack, own.shown[at[1:]])
+    if finding.outcome == "rejected":
+        return _named(finding, subject, own.shown[at[1:-1]], given.cdf[at[1:-1]], own.cdf[at[1:-1]])
+    return finding
+
+
+def _named(finding: Finding, subject: Subject, points: np.ndarray, given: np.ndarray, right: np.ndarray) -> Finding:
+    """Return the finding with what stands for the cdf, (m,) at points between the ends, less its value at the left end."""
+    if min(np.max(np.abs(given - level + right), initial=0.0) for level in (0.0, 1.0)) < _SAME:
+        words = "1 - cdf(x) fits the pdf: this is the complementary cdf, the probability above x"
+        return replace(finding, message=f"{finding.message}; {words}", cause="complementary cdf")
+    told = np.isfinite(points)
+    with np.errstate(all="ignore"):
+        cdf = numbers("cdf(x)", call("cdf(x)", subject.cdf, points[told]), (int(told.sum()),)) if subject.cdf else given
+        pdf = subject.density(points[told])
+    if np.allclose(cdf, pdf, rtol=_SAME, atol=0):
+        return replace(finding, message=f"{finding.message}; cdf(x) is pdf(x) itself")
+    return finding

@@ -82,6 +82,8 @@ def main(arguments: list[str] | None = None) -> Any:
     """Run the command line. Every end is a sentence and a code; 1 means that something was rejected, and nothing else."""
     if sys.stdout is None:
         sys.stdout = _unread()
+    if sys.stderr is None:
+        sys.stderr = _nowhere()
     wait_for_streams()
     warnings.showwarning = _warn
     with stoppable() as listening:
@@ -173,6 +175,15 @@ def _seen_as_unread() -> Iterator[None]:
     except BrokenPipeError:
         silence(sys.stdout)
         raise click.exceptions.Exit(UNREAD) from None
+
+
+def _nowhere() -> TextIO:
+    """Return what stands for a stderr that was closed before the start; no file that is opened later takes its number."""
+    opened = os.open(os.devnull, os.O_WRONLY)
+    if opened != 2:  # stdin is closed, too
+        os.dup2(opened, 2)
+        os.close(opened)
+    return open(2, "w", encoding="utf-8", closefd=False)
 
 
 def _unread() -> TextIO:

@@ -59,16 +59,21 @@ def _answered(path: str, quantities: Sequence[str], limits: Limits) -> list[Entr
     """Return the answers to the requests of a file of JSON lines; all bad lines are told at once, of many the first ten."""
     entries = golden_entries(quantities, [], limits)  # none; an unknown quantity is no fault of a line
     bad: list[str] = []
+    asked = False
     for number, line in enumerate(_lines(path), start=1):
         try:
             request = _request(line, number == 1)
-            entries += [] if request is None else golden_entries(quantities, [request], limits)
+            if request is not None:
+                asked = True
+                entries += golden_entries(quantities, [request], limits)
         except FogproofError as error:
             bad.append(f"{path}, line {number}: {error}")
             if len(bad) == _TOLD or len(line) > Limits.bytes:  # what follows would be the rest of the same line
                 break
     if bad:
         raise InvalidInputError("\n".join(bad), path)
+    if not asked:
+        raise InvalidInputError(f"{path} holds no request: write a JSON object a line", path)
     return entries
 
 

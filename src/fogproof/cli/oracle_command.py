@@ -13,6 +13,7 @@ import click
 
 from fogproof.cli.answer_timeout import answer_timeout
 from fogproof.cli.terminal import requests_on_stdin, say
+from fogproof.errors import InvalidInputError
 from fogproof.input_files import read_requests
 from fogproof.oracle import Limits, schema, serve
 from fogproof.quantities import quantities
@@ -100,6 +101,8 @@ def _stdin() -> Callable[[int], bytes]:
 def _file(path: str) -> Callable[[int], bytes]:
     """Return how to read a file: as it is if it holds lines of JSON, as one line if it holds one object on several."""
     content = read_requests(path)
+    if not content.strip():
+        raise InvalidInputError(f"{path} holds no request: write a JSON object, or one a line", path)
     if _is_json(content) or not any(map(_is_json, content.split(b"\n"))):
         content = content.replace(b"\n", b" ")
     return io.BytesIO(content).read1

@@ -77,6 +77,7 @@ def command(
     Example:  fogproof relations scenes/images/sun.toml --with mitsuba -o build/relations
     """
     from fogproof.reports import prepare_folder
+    from fogproof.scene.files import read_image_scenes
 
     chosen = renderer_of(renderer)
     ways = tuple(name.strip() for name in integrators.split(",") if name.strip()) or chosen.integrators
@@ -85,6 +86,7 @@ def command(
     run = RelationRun(
         chosen, ways, samples, renders, seed, tolerance, alpha, python, only, not no_oracle, seconds
     )  # fmt: skip
+    read_image_scenes(scenes)  # what cannot be read is told before hours of rendering
     prepare_folder(folder, ("index.html", "results.json"), force)
     rows: list[dict[str, Any]] = []
     asked = count_relations(scenes, run, folder)

@@ -64,8 +64,10 @@ def command(
     Example:  fogproof render scenes/images/*.toml --with mitsuba -o build/mitsuba
     """
     from fogproof.reports import prepare_folder
+    from fogproof.scene.files import read_image_scenes
 
     wanted = Wanted(renderer_of(renderer), samples, seed, tolerance, alpha, python, seconds)
+    read_image_scenes(scenes)  # what cannot be read is told before hours of rendering
     prepare_folder(folder, ("index.html", "results.json"), force)
     rows: list[dict[str, Any]] = []
     width = max(len(path.stem) for path in scenes)

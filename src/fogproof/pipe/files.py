@@ -53,6 +53,8 @@ def _npy(path: Path) -> tuple[np.ndarray, tuple[str, ...]]:
                 raise ValueError(f"its header has {length} bytes")
             file.seek(0)
             array = npy.read_array(file, allow_pickle=False)
+            if left := size_of(file) - file.tell():
+                raise ValueError(f"{left} bytes follow the array that its header tells of; write one array a file")
         except Exception as error:  # NumPy evaluates the header as a Python literal: anything may come of it
             said = str(error).partition("\n")[0][:80] or "its header is broken"
             raise InvalidInputError(f"{path} is no .npy array: {said}", str(path)) from None

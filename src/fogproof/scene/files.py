@@ -9,13 +9,14 @@ import difflib
 import json
 import math
 import tomllib
+from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from fogproof.errors import InvalidInputError, InvalidValueError, shorten
+from fogproof.errors import FogproofError, InvalidInputError, InvalidValueError, shorten
 from fogproof.input_files import parse_json, read_text
 from fogproof.scene.image_scenes import ImageScene
 from fogproof.scene.scenes import Scene
@@ -35,6 +36,19 @@ def read_image_scene(path: str | Path) -> ImageScene:
         raise InvalidInputError(f"{path}: camera is missing; {fix}", "camera")
     scene: ImageScene = read_fields({"scene": ImageScene}, {"scene": table}, str(path))["scene"]
     return scene
+
+
+def read_image_scenes(paths: Iterable[str | Path]) -> list[ImageScene]:
+    """Read scenes with cameras; the faults of all files are told in one `InvalidInputError`, before anything is done with one."""
+    scenes, faults = [], []
+    for path in paths:
+        try:
+            scenes.append(read_image_scene(path))
+        except FogproofError as error:
+            faults.append(str(error))
+    if faults:
+        raise InvalidInputError("\n".join(faults), "scene")
+    return scenes
 
 
 def _table(path: Path) -> dict[str, Any]:

@@ -17,6 +17,7 @@ CAUSES = (
     "not a number",
     "outside the domain",
     "negative pdf",
+    "complementary cdf",
     "claimed hole",
     "wrong measure",
     "normalisation",
@@ -64,6 +65,10 @@ def likely_cause(findings: Iterable[Finding]) -> str:
         named = named - {"wrong probability of an atom"}
     if "atom" in named and any(f.check == "repeated points" and f.outcome == "not rejected" for f in found):
         named = named - {"atom"} | {"shape"}
+    if "edge of the uniforms" in named and any(
+        f.p_value is not None and f.cause in _BULK for f in found if f.outcome == "rejected"
+    ):
+        named = named - {"edge of the uniforms"}  # which are too rare to move a law
     if any(f.check in ("domain", "returned pdf") and f.cause == "coarse numbers" for f in found):
         return "coarse numbers"  # rounded points are missing where they should be, and edges are rounded too
     if "repeated samples" in named and any(f.check == "size of the call" for f in found):

@@ -7,11 +7,11 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from fogproof.checks.diagnosis import directions, holes, lines, numbers, regions
+from fogproof.checks.diagnosis import directions, holes, lines, numbers, parts, regions
 from fogproof.checks.diagnosis.causes import likely_cause
 from fogproof.checks.diagnosis.contrast import Contrast, Fit, claimed
 from fogproof.checks.diagnosis.factors import named_factor
-from fogproof.checks.diagnosis.fitting import Explained, likeliest, sharpened
+from fogproof.checks.diagnosis.fitting import Explained, likeliest, nearest, sharpened
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting
 from fogproof.checks.diagnosis.patience import OutOfTimeError, limited
 from fogproof.checks.diagnosis.points import single_points
@@ -19,12 +19,13 @@ from fogproof.checks.statistics.repeats import KEPT
 from fogproof.checks.streams import batch_generator
 from fogproof.checks.subject import Subject
 from fogproof.checks.verdict import Finding
-from fogproof.domains import Discrete, HalfLine, Interval, RealLine, UnitHemisphere, UnitSphere
+from fogproof.domains import Discrete, HalfLine, Interval, Product, RealLine, UnitHemisphere, UnitSphere
 from fogproof.errors import shorten
 
 _PLACES = {"skipped band", "missing tail", "missing patch"}  # told by one place alone: only if that explains the misfit
 _STATISTICAL = {"shape", "skipped band", "missing tail", "missing patch", "sign convention", "correlation"}
 _CONSTANT = {"normalisation", "wrong measure"}
+_MOVES = {"sign convention", "swapped axes", "wrong scale", "shifted", "wrong power", "missing Jacobian"}
 _ANYTHING = {"mixture", "uniform law", "another law"}  # laws that a hole in the pdf makes likelier
 _ZERO = {"claimed hole"}  # as of a law that lies elsewhere, or only of one place
 _SYMPTOMS = {
@@ -34,8 +35,9 @@ _SYMPTOMS = {
     "edge of the uniforms",
 }  # that a wrong law brings along
 _SIZES = (1 << 14, 1 << 16, 1 << 18)  # samples: as few as show the misfit plainly
+_SMALL = 1 << 20  # samples that tell a misfit which does not show in so many
 _PLAIN = 1000.0  # chi-square that is plain
-_STANDS_OUT = 25.0  # of likelihood that a hypothesis gains, where cells alone do not show the misfit
+_STANDS_OUT = 12.0  # of likelihood that a hypothesis gains, where cells alone do not show the misfit
 _MISFIT = 4.0  # standard deviations of a chi-square that is no chance
 _LOOKED = 1 << 14  # samples among which single points are looked for
 _NOTHING = 1e-6  # an integral
@@ -61,6 +63,10 @@ def diagnosed(
         try:
             with np.errstate(all="ignore"):
                 named, words = ("", "") if cause in _CONSTANT else single_points(subject, samples, seed)
+                if named != "clamped" and cause == "atom" and statistical:
+                    other = _searched(subject, "shape", findings, samples, seed)
+                    if other[1] and other[0] in _MOVES:  # and rounding gathers samples where it takes them
+                        return other
                 if named == "clamped" or cause == "atom":
                     return named or cause, words
                 return _searched(subject, cause, findings, samples, seed)
@@ -97,6 +103,9 @@ def _searched(
     setting, base = found
     if cause in _CONSTANT and not base.left > _MISFIT * math.sqrt(2 * base.freedom):
         return cause, _factor(base)
+    by_labels = any(f.check == "normalisation" and f.resolution is None for f in findings)
+    if cause == "shape" and by_labels and base.left < _MISFIT * math.sqrt(2 * base.freedom) and _factor(base):
+        return "normalisation", _factor(base)
     best = _explained(subject, setting, base, samples, seed)
     if best is not None and not (cause in _ZERO and best.hypothesis.cause in _ANYTHING):
         return best.hypothesis.caused(best.value, best.error), best.words
@@ -176,17 +185,35 @@ def _contrasted(subject: Subject, samples: int, seed: int) -> tuple[Setting, Fit
 
 def _explained(subject: Subject, setting: Setting, base: Fit, samples: int, seed: int) -> Explained | None:
     """Return the hypothesis that explains the misfit, None if none does."""
+    chance = _MISFIT * math.sqrt(2 * base.freedom)
+    if (
+        base.left < chance
+    ):  # a small smooth misfit hides among many cells, and stands out against the hypothesis that it is
+        small = _small(subject, setting, samples, seed)
+        if small is not None:
+            return small
     best = likeliest(setting, base, [*_of_domain(setting), *holes.hypotheses(setting)])
     if best is None:
         return None
-    # A small smooth misfit hides among many cells, and stands out against the hypothesis that it is.
-    chance, gain = _MISFIT * math.sqrt(2 * base.freedom), best.fit.likelihood - base.likelihood
+    gain = best.fit.likelihood - base.likelihood
     if base.left < chance and gain < _STANDS_OUT:
         return None
     if best.share < _needed(best.hypothesis) and not (best.fit.left < chance and gain > _STANDS_OUT):
         return None
     large = _setting(subject, min(_SIZES[-1], samples), seed) if best.hypothesis.trials else None
     return best if large is None else sharpened(large, best)
+
+
+def _small(subject: Subject, setting: Setting, samples: int, seed: int) -> Explained | None:
+    """Return the hypothesis that a misfit hardly seen in the cells is, None if none stands out."""
+    large = setting if samples <= _SIZES[-1] else _setting(subject, min(_SMALL, samples), seed)
+    if large is None:
+        return None
+    base = large.contrast.fit(large.p(large.contrast.points))
+    best = nearest(setting, large, base, [*_of_domain(setting), *holes.hypotheses(setting)])
+    if best is None or best.fit.left > _MISFIT * math.sqrt(2 * best.fit.freedom):
+        return None
+    return best if best.fit.likelihood - base.likelihood > _STANDS_OUT else None
 
 
 def _needed(hypothesis: Hypothesis) -> float:
@@ -202,6 +229,8 @@ def _of_domain(setting: Setting) -> Iterator[Hypothesis]:
             return lines.hypotheses(setting)
         case Discrete():
             return numbers.hypotheses(setting)
+        case Product() as product:
+            return parts.hypotheses(setting, product, _of_domain)
     if setting.domain.shape == (3,) and np.allclose(np.sum(setting.contrast.x[:99] ** 2, axis=1), 1):
         return directions.hypotheses(setting)
     return regions.hypotheses(setting) if len(setting.domain.shape) == 1 else iter(())

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from fogproof.checks.diagnosis import grids
 from fogproof.checks.diagnosis.contrast import Density
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting, known_number, of_points
 
@@ -16,6 +17,8 @@ _MIRROR = np.array([1.0, 1.0, -1.0])
 _ALONG = 0.03  # from a coordinate axis: such a lobe is meant to be about it
 _PER_CELL = 8  # samples in a cell, seen and expected, that tell a density
 _UNIT_LENGTH = 0.3  # relative error of a direction that cells tell
+_LINEAR = 1e-6  # share of the variance of a logarithm that a line leaves
+_CONSTANT = 0.02  # deviation of the logarithm of a ratio of two lobes that are one
 _LEAN = 0.03  # mean length of directions that have a direction
 
 
@@ -46,6 +49,7 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
     yield from _flat(setting)
     yield from _half_vectors(setting)
     yield from _frames(setting)
+    yield from _lobes(setting)
     yield Hypothesis(
         "wrong power",
         "these samples fit the pdf times a power of the cosine, {value}",
@@ -58,12 +62,14 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
                 1.0: "a cosine too many",
             }
         ),
+        null=0.0,
     )
     yield Hypothesis(
         "stretched",
         "these samples fit the pdf with x and y stretched by {value}",
         lambda s, a: s.moved(lambda x: _unit(x * (1 / a, 1 / a, 1.0)), _squeezed(1 / a)),
-        (0.25, 0.5, 0.7, 1.4, 2.0, 4.0),
+        (0.25, 0.5, 0.7, 0.9, 0.97, 1.03, 1.1, 1.4, 2.0, 4.0),
+        null=1.0,
     )
     yield Hypothesis(
         "missing square root",
@@ -71,8 +77,9 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
         lambda s, a: s.moved(_cosine_to(1 / a), lambda x: np.abs(x[:, 2]) ** (1 / a - 1) / a),
         (0.5, 0.7, 1.5, 2.0, 3.0),
         known_number({2.0: "a square root of the cosine is missing", 0.5: "a square root too many"}),
+        null=1.0,
     )
-    yield from _lobes(setting)
+    yield from grids.of_directions(setting)
 
 
 def _flat(setting: Setting) -> Iterator[Hypothesis]:
@@ -203,29 +210,47 @@ def _lobes(setting: Setting) -> Iterator[Hypothesis]:
     axis = np.rint(axis) if np.linalg.norm(axis - np.rint(axis)) < _ALONG else axis
     own = f"; the pdf's mean cosine is {length:.4g}" if length > _LEAN else ""
 
-    def about(f: Callable[[np.ndarray, float], np.ndarray]) -> Callable[[Setting, float], Density]:
-        return lambda s, value: lambda x: f(x @ axis, value)
+    def about(f: Callable[[np.ndarray, float], np.ndarray], null: float | None) -> Callable[[Setting, float], Density]:
+        if null is None:
+            return lambda s, value: lambda x: f(x @ axis, value)
+        return lambda s, value: lambda x: s.p(x) * f(x @ axis, value) / f(x @ axis, null)  # whatever else the claim has
 
     g = (-0.95, -0.8, -0.6, -0.3, 0.05, 0.3, 0.6, 0.8, 0.9, 0.97)
+    kappas = (0.5, 2.0, 8.0, 32.0, 128.0, 1000.0)
+    kappa = _kappa(setting, axis)
+    near = () if kappa is None else (0.9 * kappa, 1.1 * kappa)
+    for law, f, trials, null in (
+        ("Henyey-Greenstein with g", henyey_greenstein, g, _own(setting, axis, henyey_greenstein)),
+        ("Schlick's phase function with k", schlick, g, _own(setting, axis, schlick)),
+        ("a von Mises-Fisher lobe with kappa", _fisher, tuple(sorted({*kappas, *near})), kappa),
+    ):
+        yield Hypothesis(
+            "another law" if null is None else "another parameter",
+            f"these samples fit {law} = {{value}}" + (own if null is None else f"; the pdf's is {null:.4g}"),
+            about(f, null),
+            trials,
+            null=null,
+        )
     yield Hypothesis(
-        "another parameter" if _is_lobe(setting, axis, length, henyey_greenstein) else "another law",
-        "these samples fit Henyey-Greenstein with g = {value}" + own,
-        about(henyey_greenstein),
-        g,
+        "another law", "these samples fit Rayleigh's phase function", about(lambda mu, _: 1 + mu * mu, None)
     )
-    yield Hypothesis(
-        "another parameter" if _is_lobe(setting, axis, length, schlick) else "another law",
-        "these samples fit Schlick's phase function with k = {value}" + own,
-        about(schlick),
-        g,
-    )
-    yield Hypothesis("another law", "these samples fit Rayleigh's phase function", about(lambda mu, _: 1 + mu * mu))
-    yield Hypothesis(
-        "another law",
-        "these samples fit a von Mises-Fisher lobe with kappa = {value}" + own,
-        about(lambda mu, kappa: np.exp(kappa * (mu - 1))),
-        (0.5, 2.0, 8.0, 32.0, 128.0, 1000.0),
-    )
+
+
+def _fisher(mu: np.ndarray, kappa: float | np.ndarray) -> np.ndarray:
+    return np.exp(kappa * (mu - 1))
+
+
+def _kappa(setting: Setting, axis: np.ndarray) -> float | None:
+    """Return the parameter of a claim that is a von Mises-Fisher lobe itself, None if it is none: its logarithm is linear."""
+    x = setting.contrast.x[:512]
+    p = setting.p(x)
+    if not np.all(p > 0):
+        return None
+    versine = 0.5 * np.sum((x - axis) ** 2, axis=1)
+    scale = float(versine.mean())
+    slope, level = np.polyfit(versine / scale, np.log(p), 1)
+    left, kappa = np.log(p) - level - slope * versine / scale, -float(slope) / scale
+    return kappa if kappa > _LEAN and np.var(left) < _LINEAR * np.var(np.log(p)) else None
 
 
 def henyey_greenstein(mu: np.ndarray, g: float | np.ndarray) -> np.ndarray:
@@ -238,16 +263,17 @@ def schlick(mu: np.ndarray, k: float | np.ndarray) -> np.ndarray:
     return np.asarray((1 - k * k) / np.maximum(1 - k * mu, 1e-9) ** 2)
 
 
-def _is_lobe(setting: Setting, axis: np.ndarray, length: float, f: Callable[[Any, Any], np.ndarray]) -> bool:
-    """Return whether the claim itself is such a lobe: its ratio to one with its own width is a constant."""
+def _own(setting: Setting, axis: np.ndarray, f: Callable[[Any, Any], np.ndarray]) -> float | None:
+    """Return the parameter of a claim that is such a lobe itself, None if it is none: its ratio to one as wide is a constant."""
     x = setting.contrast.x[:512]
     p, mu = setting.p(x), x @ axis
     if not np.all(p > 0):
-        return False
+        return None
     ends = np.argmax(mu), np.argmin(mu)
     target = np.log(p[ends[0]] / p[ends[1]])
-    values = np.linspace(-0.999, 0.999, 4001)
-    own = np.log(f(mu[ends[0]], values) / f(mu[ends[1]], values))
-    best = values[int(np.argmin(np.abs(own - target)))]
-    ratio = np.log(p) - np.log(f(mu, best))
-    return bool(np.std(ratio) < 0.02)
+    best, room = 0.0, 0.999
+    for _ in range(3):
+        values = np.linspace(max(best - room, -0.999), min(best + room, 0.999), 401)
+        own = np.log(f(mu[ends[0]], values) / f(mu[ends[1]], values))
+        best, room = float(values[int(np.argmin(np.abs(own - target)))]), 0.01 * room
+    return best if np.std(np.log(p) - np.log(f(mu, best))) < _CONSTANT else None

@@ -14,6 +14,10 @@ from fogproof.doing import doing
 _SCREENED = 1 << 12  # samples on which all hypotheses are tried first, with a few parameters each
 _TRIED = 12  # of them that are fitted closer, on as many samples as show the misfit
 _TELLING, _MOST = 200.0, 1 << 16  # chi-square of the misfit on those samples, and most of them
+_FALLEN, _DOUBLED = 0.3, 16  # of log-likelihood beside its maximum; times at most that an error is doubled
+_TIE = 1.5  # of log-likelihood: the simplest hypothesis may have so much less than the last one
+_APART = 3.0  # standard errors between a parameter and the claim's
+_NEAR = 0.1  # of the way from the null to the nearest trial: a first step
 _KEPT = 3  # of those that are fitted on all samples
 
 
@@ -69,11 +73,62 @@ def likeliest(setting: Setting, base: Fit, hypotheses: list[Hypothesis]) -> Expl
         if hypothesis.trials:
             error = _error(middle, hypothesis, value, room)
             value, error = _polished(setting, hypothesis, value, error)
+            if hypothesis.null is not None and abs(value - hypothesis.null) < _APART * error:
+                continue  # nothing tells it from the claim
         fit = setting.contrast.fit(hypothesis.density(setting, value)(setting.contrast.points))
         share = 1 - max(fit.left - 2 * math.sqrt(2 * fit.freedom), 0.0) / max(base.left, 1.0)
         score = fit.likelihood - hypothesis.price(n)
-        found.append((score + 1.5 * order / len(hypotheses), order, Explained(hypothesis, value, error, fit, share)))
+        found.append((score + _TIE * order / len(hypotheses), order, Explained(hypothesis, value, error, fit, share)))
     return max(found, key=lambda one: one[:2])[2] if found else None
+
+
+def nearest(middle: Setting, setting: Setting, base: Fit, hypotheses: list[Hypothesis]) -> Explained | None:
+    """Return the likeliest hypothesis with a parameter close to what makes it the claim: a misfit that hardly shows is no other.
+
+    middle  fewer samples, on which all are tried
+    """
+    at_null = _null_likelihood(middle)
+    tried = []
+    for order, hypothesis in enumerate(hypotheses):
+        if hypothesis.null is None:
+            continue
+        step = _NEAR * min(abs(value - hypothesis.null) for value in hypothesis.trials)
+        try:
+            value, error, gain = _parabola(middle, hypothesis, hypothesis.null, step, at_null)
+        except Exception:  # the user's density may refuse points that no sampler gave
+            continue
+        tried.append((gain - hypothesis.price(len(middle.contrast.x)), -order, hypothesis, value, error))
+    found = []
+    for _, order, hypothesis, value, error in sorted(tried, key=lambda one: one[:2], reverse=True)[:_KEPT]:
+        value, error, _ = _parabola(setting, hypothesis, value, error, _likelihood(setting, hypothesis, value))
+        fit = setting.contrast.fit(hypothesis.density(setting, value)(setting.contrast.points))
+        share = 1 - max(fit.left - 2 * math.sqrt(2 * fit.freedom), 0.0) / max(base.left, 1.0)
+        score = fit.likelihood + _TIE * order / len(hypotheses)
+        found.append((score, order, Explained(hypothesis, value, error, fit, share)))
+    return max(found, key=lambda one: one[:2])[2] if found else None
+
+
+def _null_likelihood(setting: Setting) -> float:
+    return setting.contrast.likelihood(setting.p(setting.contrast.points))
+
+
+def _parabola(
+    setting: Setting, hypothesis: Hypothesis, null: float, step: float, at: float
+) -> tuple[float, float, float]:
+    """Return the parameter, its standard error and the gain of likelihood, by a parabola about a value of likelihood `at`."""
+    value, error, gain = null, step, 0.0
+    for _ in range(3):
+        below, above = (_likelihood(setting, hypothesis, null + d) for d in (-step, step))
+        curvature = (2 * at - below - above) / step**2
+        if not (curvature > 0 and math.isfinite(curvature)):
+            return value, error, gain
+        error = 1 / math.sqrt(curvature)
+        slope = (above - below) / (2 * step)
+        value, gain = null + slope / curvature, 0.5 * slope**2 / curvature
+        if 0.3 * step < error < 10 * step:
+            break
+        step = error
+    return value, error, gain
 
 
 def _likelihood(setting: Setting, hypothesis: Hypothesis, value: float) -> float:
@@ -115,12 +170,30 @@ def sharpened(setting: Setting, found: Explained) -> Explained:
 
 
 def _polished(setting: Setting, hypothesis: Hypothesis, value: float, error: float) -> tuple[float, float]:
-    """Return a parameter and its standard error on more samples than it was fitted to, by parabolas through the likelihood."""
-    for _ in range(2):
+    """Return a parameter and its standard error on more samples than it was fitted to, by parabolas through the likelihood.
+
+    Where the support of the density moves with it, the likelihood has steps: what makes it less likely is not taken.
+    """
+    best = -math.inf
+    kept = value, error
+    for _ in range(3):
         below, at, above = (_likelihood(setting, hypothesis, value + step) for step in (-error, 0.0, error))
+        if at < best:
+            break
+        best, kept = at, (value, error)
         curvature = (2 * at - below - above) / error**2
         if not (curvature > 0 and math.isfinite(curvature)):
             break
         value += float(np.clip((above - below) / (2 * error * curvature), -3 * error, 3 * error))
         error = 1 / math.sqrt(curvature)
-    return value, error
+    return kept[0], _reach(setting, hypothesis, *kept)
+
+
+def _reach(setting: Setting, hypothesis: Hypothesis, value: float, error: float) -> float:
+    """Return an error, doubled until the likelihood falls on both sides as it does at a standard error, by 1/2 or nearly."""
+    at = _likelihood(setting, hypothesis, value)
+    for _ in range(_DOUBLED):
+        if max(_likelihood(setting, hypothesis, value + step) for step in (-error, error)) <= at - _FALLEN:
+            break
+        error *= 2
+    return error

@@ -11,6 +11,7 @@ from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting
 
 _LACK = 0.5  # of the expected samples: a place with fewer belongs to a hole
 _GAIN = 20.0  # samples that a hole must lack beyond that
+_HALF_TURN = 2e-3
 _EMPTY = 0.2  # the same for a cell of the tree
 _TELLING = 8.0  # samples expected in such a cell
 
@@ -29,6 +30,7 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
         "a share of {value} of these samples follows another, broader law",
         lambda s, e: lambda x: (1 - min(e, 1.0)) * s.p(x) + min(e, 1.0) * s.law.density(x),
         (0.003, 0.01, 0.03, 0.1, 0.3, 0.6),
+        null=0.0,
     )
 
 
@@ -68,7 +70,10 @@ def _outside(setting: Setting, axis: int, low: float, high: float) -> Hypothesis
         where = f"{ends.min():.5g} < x < {ends.max():.5g}"
     else:
         where = f"the share {low:.4g} to {high:.4g} of the axis {name}"
-    end = low <= 1e-9 or high >= 1 - 1e-9 or not _any_beyond(setting, axis, low, high)
+    turn = name.split()[0] == "phi"  # it has no end
+    if turn and abs(high - low - 0.5) < _HALF_TURN:
+        where += ", half the turn: as of an azimuth over pi where 2 pi is meant"
+    end = not turn and (low <= 1e-9 or high >= 1 - 1e-9 or not _any_beyond(setting, axis, low, high))
 
     def density(x: np.ndarray) -> np.ndarray:
         u = _coordinate(setting, x, axis)

@@ -80,6 +80,7 @@ class Hypothesis:
     trials   values of the parameter to begin with, in order; () if there is none
     fitted   how many parameters were taken from the samples beforehand
     named    parameter -> what it is better known as, "" if it is nothing special
+    null     the parameter with which it is the claim itself, None if there is none
     otherwise  the class of error where the parameter is no whole or half number, `cause` unless given
     """
 
@@ -90,6 +91,7 @@ class Hypothesis:
     named: Callable[[float, float], str] = field(default=lambda value, error: "")
     fitted: int = 0
     otherwise: str = ""
+    null: float | None = None
 
     def caused(self, value: float, error: float) -> str:
         """Return the class of error, given the fitted parameter and its standard error."""

@@ -7,26 +7,33 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from fogproof.checks.diagnosis.grids import SHIFTS
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting, known_number
-from fogproof.domains import HalfLine, Interval
+from fogproof.domains import HalfLine, Interval, RealLine
 
-_SCALES = (0.001, 0.01, 0.1, 0.3, 0.5, 0.8, 0.95, 1.05, 1.25, 2.0, 3.0, 10.0, 100.0, 1000.0)
+_MIDDLE = 0.05  # of a standard deviation: a claim's middle is told no closer
+SCALES = (0.001, 0.01, 0.1, 0.3, 0.5, 0.8, 0.95, 1.05, 1.25, 2.0, 3.0, 10.0, 100.0, 1000.0)
 _POWERS = (-2.0, -1.5, -1.0, -0.5, -0.2, 0.2, 0.5, 1.0, 1.5, 2.0)
-_FACTORS = known_number(
-    {
-        math.log(10): "the decimal logarithm was taken for the natural one",
-        1 / math.log(10): "the natural logarithm was taken for the decimal one",
-        2.0: "a factor of 2",
-        0.5: "a factor of 1/2",
-        4.0: "a factor of 4",
-        0.25: "a factor of 1/4",
-        math.log(2): "a factor of log 2",
-        1 / math.log(2): "the binary logarithm was taken for the natural one",
-        2 * math.pi: "a factor of 2 pi",
-        4 * math.pi: "a factor of 4 pi",
-        math.pi: "a factor of pi",
-    }
+_NAMES = {
+    math.log(10): "the decimal logarithm was taken for the natural one",
+    1 / math.log(10): "the natural logarithm was taken for the decimal one",
+    math.log(2): "the binary logarithm was taken for the natural one",
+    1 / math.log(2): "the natural logarithm was taken for the binary one",
+    180 / math.pi: "radians were taken for degrees",
+    math.pi / 180: "degrees were taken for radians",
+    2.0: "a factor of 2",
+    0.5: "a factor of 1/2",
+    4.0: "a factor of 4",
+    0.25: "a factor of 1/4",
+    2 * math.pi: "a factor of 2 pi",
+    4 * math.pi: "a factor of 4 pi",
+    math.pi: "a factor of pi",
+}
+_EXPONENTS = known_number(
+    {1 / k if "taken" in words and "log" not in words else k: words for k, words in _NAMES.items()}
 )
+_STRETCHES = {1 / k if "log" in words else k: words for k, words in _NAMES.items()}
+STRETCHED = known_number(_STRETCHES)
 
 
 def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
@@ -34,16 +41,33 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
     domain, x = setting.domain, setting.contrast.x
     spread = float(np.subtract(*np.quantile(x, [0.75, 0.25]))) or 1.0
     origin = domain.a if isinstance(domain, (HalfLine, Interval)) else 0.0
+    if isinstance(domain, (HalfLine, Interval)):
+        words = "these samples fit the pdf over x: a square root is missing, or a factor x"
+        yield Hypothesis(
+            "missing Jacobian", words, lambda s, _: lambda x: s.p(x) / np.maximum(np.abs(x - origin), 1e-12)
+        )
     if isinstance(domain, Interval):
+        yield from _over_sines()
         yield from _turned_or_shifted_round(domain)
     else:
         yield Hypothesis("sign convention", "these samples fit the pdf of -x", lambda s, _: lambda x: s.p(-x))
+    if isinstance(domain, RealLine):
+        yield from _of_another_deviation(setting)
     yield from _of_another_scale(origin)
+    if isinstance(domain, HalfLine):
+        yield Hypothesis(
+            "wrong power",
+            "these samples fit the pdf of x raised to the power {value}",
+            lambda s, a: lambda x: s.p(origin + _raised(x - origin, 1 / a)) * _raised(x - origin, 1 / a - 1),
+            (0.5, 0.8, 0.95, 1.05, 1.25, 2.0),
+            null=1.0,
+        )
     yield Hypothesis(
         "shifted",
         "these samples fit the pdf shifted by {value}",
         lambda s, d: lambda x: s.p(x - d),
         tuple(spread * f for f in (-3.0, -1.0, -0.3, -0.1, 0.1, 0.3, 1.0, 3.0)),
+        null=0.0,
     )
     yield from _of_another_measure(origin)
 
@@ -60,7 +84,8 @@ def _turned_or_shifted_round(domain: Interval) -> Iterator[Hypothesis]:
         "shifted",
         "these samples fit the pdf shifted round by {value}",
         lambda s, d: lambda x: s.p(domain.a + (x - d - domain.a) % length),
-        tuple(length * f for f in (-0.25, -0.1, -0.05, -0.02, -0.01, 0.01, 0.02, 0.05, 0.1, 0.25)),
+        tuple(length * f for f in SHIFTS),
+        null=0.0,
     )
 
 
@@ -69,15 +94,21 @@ def _of_another_scale(origin: float) -> Iterator[Hypothesis]:
         "wrong scale",
         "these samples fit the pdf of an exponent {value} times as large",
         lambda s, a: lambda x: np.maximum(s.p(x), 0.0) ** a,
-        _SCALES,
-        _FACTORS,
+        SCALES,
+        _EXPONENTS,
+        null=1.0,
     )
-    yield Hypothesis(
+    yield _stretched(origin, "")
+
+
+def _stretched(origin: float, where: str, names: dict[float, str] | None = None) -> Hypothesis:
+    return Hypothesis(
         "wrong scale",
-        "these samples fit the pdf stretched by {value}",
+        "these samples fit the pdf stretched by {value}" + where,
         lambda s, a: lambda x: s.p(origin + (x - origin) / a),
-        _SCALES,
-        _FACTORS,
+        SCALES,
+        known_number({**(names or {}), **_STRETCHES}),
+        null=1.0,
     )
 
 
@@ -89,6 +120,7 @@ def _of_another_measure(origin: float) -> Iterator[Hypothesis]:
         _POWERS,
         known_number({-1.0: "a factor x is missing", 1.0: "a factor x too many", -2.0: "a factor x^2 is missing"}),
         otherwise="wrong power",
+        null=0.0,
     )
     if origin != 0.0:
         yield Hypothesis(
@@ -101,8 +133,36 @@ def _of_another_measure(origin: float) -> Iterator[Hypothesis]:
         "these samples fit the pdf times sin x: an angle was taken for its cosine, or a sine is too many",
         lambda s, _: lambda x: s.p(x) * np.abs(np.sin(x)),
     )
+    yield from _over_sines()
+
+
+def _over_sines() -> Iterator[Hypothesis]:
     yield Hypothesis(
         "missing Jacobian",
         "these samples fit the pdf over sin x: a sine is missing",
         lambda s, _: lambda x: s.p(x) / np.maximum(np.abs(np.sin(x)), 1e-9),
     )
+
+
+def _raised(x: np.ndarray, power: float) -> np.ndarray:
+    return np.asarray(np.maximum(x, 1e-300) ** power)
+
+
+def _of_another_deviation(setting: Setting) -> Iterator[Hypothesis]:
+    """Yield that the samples are spread otherwise about where the claim is."""
+    contrast = setting.contrast
+    weight = setting.p(contrast.points)[len(contrast.x) :] / contrast.q[len(contrast.x) :]
+    order = np.argsort(contrast.z)
+    share = np.cumsum(weight[order])
+    if not (np.isfinite(share[-1]) and share[-1] > 0):
+        return
+    low, middle, high = np.interp((0.158655, 0.5, 0.841345), share / share[-1], contrast.z[order]).tolist()
+    deviation = 0.5 * (high - low)
+    if not deviation > 0:
+        return
+    middle = round(middle, -math.floor(math.log10(_MIDDLE * deviation)))
+    names = {deviation: "as if a variance stood for the standard deviation"}
+    names[deviation**-0.5] = "as if the standard deviation stood for a variance"
+    yield _stretched(0.0, "", names)
+    if abs(middle) > _MIDDLE * deviation:
+        yield _stretched(middle, f" about {middle:.4g}", names)

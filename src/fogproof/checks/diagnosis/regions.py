@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import permutations
 
 import numpy as np
 
+from fogproof.checks.diagnosis.contrast import Density
+from fogproof.checks.diagnosis.grids import SHIFTS
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting, known_number, of_points
+from fogproof.checks.diagnosis.lines import SCALES, STRETCHED
 
-_SHIFTS = (-0.1, -0.05, -0.02, -0.01, -0.003, 0.003, 0.01, 0.02, 0.05, 0.1)
 _ENDLESS = 1e300  # between the ends of an unbounded axis as its known law has them
 _MOST_SWAPPED = 4  # dimensions
 
@@ -19,23 +21,25 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
     """Yield what may have happened to points of k coordinates, the simplest first."""
     domain = setting.domain
     k = domain.shape[0]
+    center = np.asarray(getattr(domain, "center", np.zeros(k)))
+    box = _corners(setting)
+    for axis, low in enumerate([] if box is None else box[0].tolist()):
+        words = f"these samples fit the pdf over coordinate {axis}: a square root of it is missing, or a factor"
+        yield Hypothesis("missing Jacobian", words, _over(axis, low))
     yield Hypothesis("uniform law", "these samples are uniform", lambda s, _: lambda x: np.ones(len(x)))
     for order in permutations(range(k)) if k <= _MOST_SWAPPED else ():
         if order != tuple(range(k)):
             words = f"these samples fit the pdf with its axes taken in the order {', '.join(map(str, order))}"
             yield Hypothesis("swapped axes", words, of_points(partial(np.take, indices=order, axis=1)))
-    ends = setting.law.place(np.stack([np.zeros(len(setting.law.axes)), np.ones(len(setting.law.axes))]))
-    with np.errstate(over="ignore"):
-        volume = np.prod(ends[1] - ends[0])
-    if np.isclose(volume, domain.measure):  # a box: it fills the space between its corners
+    if box is not None:
         for axis in range(k):
-            yield from _along(axis, float(ends[0, axis]), float(ends[1, axis]))
+            yield from _along(axis, float(box[0, axis]), float(box[1, axis]))
     else:
         yield Hypothesis("sign convention", "these samples fit the pdf of -x", lambda s, _: lambda x: s.p(-x))
     yield Hypothesis(
         "missing Jacobian",
         "these samples fit the pdf times a power of the radius, {value}",
-        lambda s, a: lambda x: s.p(x) * np.maximum(np.sum(x * x, axis=1), 1e-24) ** (0.5 * a),
+        lambda s, a: lambda x: s.p(x) * np.maximum(np.sum((x - center) ** 2, axis=1), 1e-24) ** (0.5 * a),
         (-2.0, -1.5, -1.0, -0.5, 0.5, 1.0, 2.0),
         known_number(
             {
@@ -45,7 +49,38 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
             }
         ),
         otherwise="wrong power",
+        null=0.0,
     )
+    if k == 3 and box is None:
+        words = "a sine is missing: these samples are uniform in theta where the pdf means volume"
+        yield Hypothesis("missing Jacobian", words, lambda s, _: lambda x: s.p(x) / _sine(x - center))
+    if not np.isfinite(domain.measure):
+        yield Hypothesis(
+            "wrong scale",
+            "these samples fit the pdf stretched by {value}",
+            lambda s, a: lambda x: s.p(x / a),
+            SCALES,
+            STRETCHED,
+            null=1.0,
+        )
+
+
+def _corners(setting: Setting) -> np.ndarray | None:
+    """Return the lowest and the highest corner (2, k) of a box, None of another domain: a box fills the space between."""
+    ends = setting.law.place(np.stack([np.zeros(len(setting.law.axes)), np.ones(len(setting.law.axes))]))
+    with np.errstate(over="ignore", invalid="ignore"):
+        volume = np.prod(ends[1] - ends[0])
+    return ends if np.isclose(volume, setting.domain.measure) else None
+
+
+def _over(axis: int, low: float) -> Callable[[Setting, float], Density]:
+    return lambda s, _: lambda x: s.p(x) / np.maximum(np.abs(x[:, axis] - low), 1e-12)
+
+
+def _sine(x: np.ndarray) -> np.ndarray:
+    """Return the sine of the angle to the z axis."""
+    length = np.sqrt(np.maximum(np.sum(x * x, axis=1), 1e-24))
+    return np.maximum(np.sqrt(x[:, 0] ** 2 + x[:, 1] ** 2) / length, 1e-9)
 
 
 def _along(axis: int, low: float, high: float) -> Iterator[Hypothesis]:
@@ -65,7 +100,8 @@ def _along(axis: int, low: float, high: float) -> Iterator[Hypothesis]:
         "shifted",
         f"these samples fit the pdf shifted round by {{value}} along axis {axis}",
         lambda s, d: lambda x: s.p(replaced(x, low + (x[:, axis] - d - low) % (high - low))),
-        tuple((high - low) * f for f in _SHIFTS),
+        tuple((high - low) * f for f in SHIFTS),
+        null=0.0,
     )
     yield Hypothesis(
         "missing Jacobian",
@@ -73,4 +109,5 @@ def _along(axis: int, low: float, high: float) -> Iterator[Hypothesis]:
         lambda s, a: lambda x: s.p(x) * np.maximum(np.abs(x[:, axis]), 1e-12) ** a,
         (-1.5, -1.0, -0.5, 0.5, 1.0, 1.5),
         otherwise="wrong power",
+        null=0.0,
     )

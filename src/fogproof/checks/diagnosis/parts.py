@@ -1,0 +1,62 @@
+"""What goes wrong with one part of several, a distance and a direction say: whatever goes wrong with such a part alone."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from fogproof.checks.diagnosis import regions
+from fogproof.checks.diagnosis.contrast import Density
+from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting
+from fogproof.domains import Domain, Product
+
+_WHOLE = {"uniform law", "another law"}  # of a whole point: they say nothing of how one part depends on another
+
+
+def hypotheses(
+    setting: Setting, product: Product, of_part: Callable[[Setting], Iterator[Hypothesis]]
+) -> Iterator[Hypothesis]:
+    """Yield what may have happened to all coordinates, if each part is a number, and what may have happened to one part."""
+    if all(part.shape == () for part in product.parts):
+        yield from regions.hypotheses(setting)
+    first = 0
+    for part in product.parts:
+        last = first + math.prod(part.shape)
+        columns = slice(first, last) if part.shape else first
+        name = f" in the columns {first} to {last - 1}" if last - first > 1 else f" in the column {first}"
+        for hypothesis in of_part(_part(setting, part, columns)):
+            if hypothesis.cause not in _WHOLE:
+                yield _lifted(hypothesis, part, columns, name)
+        first = last
+
+
+def _lifted(hypothesis: Hypothesis, part: Domain, columns: slice | int, name: str) -> Hypothesis:
+    """Return the hypothesis about one part as one about the whole points."""
+
+    def density(s: Setting, value: float) -> Density:
+        alone = _part(s, part, columns)
+        return lambda x: hypothesis.density(alone, value)(alone.contrast.points if x is s.contrast.points else x)
+
+    return replace(hypothesis, words=hypothesis.words + name, density=density)
+
+
+def _part(setting: Setting, part: Domain, columns: slice | int) -> Setting:
+    """Return what one part is, the others staying as they are: its density is the claim with that part replaced.
+
+    It may be asked at all points, or at any number of others, where the other parts are those of the first point.
+    """
+    whole = setting.contrast
+    law = part.law(whole.x[:, columns])
+
+    def claim(y: np.ndarray) -> np.ndarray:
+        moved = whole.points.copy() if len(y) == len(whole.points) else np.repeat(whole.points[:1], len(y), axis=0)
+        moved[:, columns] = y
+        return setting.p(moved)
+
+    contrast = replace(whole, law=law, x=whole.x[:, columns], z=whole.z[:, columns])
+    alone = Setting(part, law, claim, contrast)
+    alone.__dict__["_at_points"] = setting.p(whole.points)
+    return alone
