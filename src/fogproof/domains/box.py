@@ -18,7 +18,10 @@ _NAMES = "xyz"
 def contained(low: np.ndarray, high: np.ndarray, x: np.ndarray, slack: float) -> np.ndarray:
     """Return (n,) which points (n, k) lie between two corners (k,)."""
     room = np.maximum(slack * np.maximum(np.abs(low), np.abs(high)), at_the_ends(slack) * (high - low))
-    return np.all((x >= low - room) & (x <= high + room), axis=-1)
+    inside = np.ones(x.shape[:-1], dtype=bool)
+    for axis, (least, most) in enumerate(zip((low - room).tolist(), (high + room).tolist(), strict=True)):
+        inside &= (x[..., axis] >= least) & (x[..., axis] <= most)  # a reduction over few numbers would be slow
+    return inside
 
 
 def uniform(low: np.ndarray, high: np.ndarray) -> Law:
