@@ -58,9 +58,9 @@ class Clock:
         """Let about so many seconds pass in this thread."""
         with self._lock:
             if self._calls % 50 == 0:
-                self._mood = math.exp(0.15 * self._rng.normal())
+                self._mood = math.exp(0.15 * self._rng.normal() - 0.15**2 / 2)
             self._calls += 1
-            took = seconds * self._mood * math.exp(NOISE * self._rng.normal())
+            took = seconds * self._mood * math.exp(NOISE * self._rng.normal() - NOISE**2 / 2)
         self._own.now = self.thread_time() + took
 
     def thread_time(self) -> float:
