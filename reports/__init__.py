@@ -28,6 +28,7 @@ from fogproof.reports.records.runs import (
     write_record,
 )
 from fogproof.reports.records.studies import as_run, parse_study
+from fogproof.reports.records.study_record import History
 
 __all__ = [
     "COMPARISON",
@@ -78,7 +79,7 @@ def write_comparison(before: dict[str, Any], after: dict[str, Any], folder: str 
     older, newer = _run(before, "before"), _run(after, "after")
     write_record(before, folder, "before.json")
     write_record(after, folder, "after.json")
-    return write_comparison_page(older, newer, Path(folder))
+    return write_comparison_page(older, newer, Path(folder), _history(after))
 
 
 def compare_exit_code(before: dict[str, Any], after: dict[str, Any]) -> int:
@@ -90,12 +91,16 @@ def compare_exit_code(before: dict[str, Any], after: dict[str, Any]) -> int:
     if older.kind != newer.kind:
         what = f"a record of kind {older.kind!r} cannot be compared with one of kind {newer.kind!r}"
         raise InvalidInputError(f"{what}; compare two runs of the same command", "kind")
-    return exit_code(older, newer)
+    return exit_code(older, newer, _history(after))
 
 
 def _run(record: Any, origin: str) -> RunRecord:
     check_schema(record, origin)
     return as_run(parse_study(record, origin)) if _is_study(record) else parse_record(record, origin)
+
+
+def _history(after: dict[str, Any]) -> History | None:
+    return parse_study(after).history if _is_study(after) else None
 
 
 def _is_study(record: Any) -> bool:

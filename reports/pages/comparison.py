@@ -13,6 +13,7 @@ from fogproof.reports.files import write_file
 from fogproof.reports.pages.templates import cases as some_cases
 from fogproof.reports.pages.templates import fill
 from fogproof.reports.records.runs import Case, RunRecord
+from fogproof.reports.records.study_record import History
 
 CHANGES = ("worse", "changed", "gone", "mended", "new", "same")
 """What may have become of a case, from what needs attention to what does not."""
@@ -52,13 +53,16 @@ def pair_cases(before: RunRecord, after: RunRecord) -> list[Pair]:
     return sorted(pairs, key=lambda pair: (CHANGES.index(pair.change), not pair.wrong))
 
 
-def exit_code(before: RunRecord, after: RunRecord) -> int:
-    """Return 1 if a case came out worse in the newer run, 3 if one is gone: nothing is known of it any more; else 0."""
+def exit_code(before: RunRecord, after: RunRecord, history: History | None = None) -> int:
+    """Return 1 if a case came out worse in the newer run, 3 if one is gone: nothing is known of it any more; else 0.
+
+    history  of a study: what else came out worse, beyond noise
+    """
     changes = {pair.change for pair in pair_cases(before, after)}
-    return 1 if "worse" in changes else 3 if "gone" in changes or after.unfinished else 0
+    return 1 if "worse" in changes or (history and history.worse) else 3 if "gone" in changes or after.unfinished else 0
 
 
-def write_comparison_page(before: RunRecord, after: RunRecord, folder: Path) -> Path:
+def write_comparison_page(before: RunRecord, after: RunRecord, folder: Path, history: History | None = None) -> Path:
     """Write `folder/comparison.html` and its figures; return the page's path."""
     pairs = pair_cases(before, after)
     figures = _figures(pairs)
@@ -75,16 +79,26 @@ def write_comparison_page(before: RunRecord, after: RunRecord, folder: Path) -> 
         counts=counts,
         settings=_settings(before, after),
         figures=figures,
-        headline=headline(counts, still, len(pairs)),
-        tone="bad" if counts["worse"] or still else "care" if counts["changed"] or counts["gone"] else "good",
+        history=history,
+        headline=headline(counts, still, len(pairs), history is not None and history.worse),
+        tone="bad"
+        if counts["worse"] or still or (history and history.worse)
+        else "care"
+        if counts["changed"] or counts["gone"]
+        else "good",
     )
     return write_file(folder / "comparison.html", page)
 
 
-def headline(counts: dict[str, int], still: int, total: int) -> tuple[str, str]:
-    """Return what changed in words: a sentence that stands alone, and the counts behind it."""
+def headline(counts: dict[str, int], still: int, total: int, slipped: bool = False) -> tuple[str, str]:
+    """Return what changed in words: a sentence that stands alone, and the counts behind it.
+
+    slipped  whether something is slower, noisier or off while no case came out otherwise
+    """
     if counts["worse"]:
         first = f"{some_cases(counts['worse'])} came out worse"
+    elif slipped:
+        first = "Something came out worse than before"
     elif still:
         first = f"Nothing came out worse, but {some_cases(still)} {'is' if still == 1 else 'are'} wrong as before"
     elif counts["gone"]:

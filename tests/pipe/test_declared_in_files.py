@@ -84,7 +84,8 @@ def test_keys_of_estimators_are_refused_for_samplers(key):
 
 
 @pytest.mark.parametrize(
-    "key", ["atoms", "events", "axis", "mean_cosine", "albedo", "uniform_bits", "quasi_random", "exact"]
+    "key",
+    ["atoms", "events", "axis", "mean_cosine", "albedo", "uniform_bits", "quasi_random", "exact", "interpolation"],
 )
 def test_keys_of_samplers_are_refused_for_estimators(key):
     given = {
@@ -94,6 +95,7 @@ def test_keys_of_samplers_are_refused_for_estimators(key):
         "uniform_bits": 32,
         "quasi_random": True,
         "exact": True,
+        "interpolation": "linear",
     }
     with pytest.raises(InvalidInputError, match=f"{key} says something of a sampler, and this is an estimator"):
         spec_of({"reference": 0.5, key: given.get(key, 0.5)}, "spec")

@@ -5,6 +5,7 @@ import pytest
 
 from fogproof.errors import FogproofError
 from fogproof.pipe.check import Settings, check_file
+from fogproof.pipe.spec import spec_of
 
 G = 0.7
 DIRECTIONS = {"axis": [0, 0, 1], "phase": {"kind": "henyey-greenstein", "g": G}}
@@ -130,7 +131,7 @@ def test_a_map_on_the_square(tmp_path):
     np.save(tmp_path / "map.npy", weights)
     cell = rng.choice(weights.size, 30_000, p=weights.ravel() / weights.size)
     x = (np.stack([cell % 16, cell // 16], axis=-1) + rng.random((30_000, 2))) / (16, 8)
-    spec = {"domain": "square", "table": str(tmp_path / "map.npy")}
+    spec = {"domain": "square", "table": str(tmp_path / "map.npy"), "interpolation": "constant"}
     assert check_file(written(tmp_path / "x.npy", x), spec).verdict.outcome == "not rejected"
     assert check_file(written(tmp_path / "x.npy", 1 - x), spec).verdict.outcome == "rejected"
 
@@ -240,3 +241,39 @@ def test_swapped_columns_of_points_and_densities_are_named(tmp_path, length):
     assert (verdict.outcome, verdict.cause) == ("rejected", "layout"), verdict
     right = check_file(path, {**spec, "columns": ["pdf", "x"]}, Settings(alpha=1e-7)).verdict
     assert right.outcome == "not rejected", right
+
+
+@pytest.mark.parametrize(
+    ("domain", "interpolation", "message"),
+    [
+        ("square", None, 'must be said of a table on the square.*interpolation = "constant"'),
+        ("square", "linear", "constant on each cell, not linear"),
+        ("sphere", "constant", "linear between its points, not constant"),
+        ({"kind": "interval", "a": 0, "b": 1}, "constant", "linear between its points, not constant"),
+        ("square", "nearest", "interpolation"),
+        ("square", "Constant", "interpolation"),
+        ("disk", "constant", "serves lines, the sphere and the square"),
+    ],
+)
+def test_how_a_table_is_read_between_its_numbers_is_said_or_refused(tmp_path, domain, interpolation, message):
+    np.save(tmp_path / "map.npy", np.ones((2, 2)))
+    columns = {"square": 2, "disk": 2, "sphere": 3}.get(domain, 1) if isinstance(domain, str) else 1
+    np.save(tmp_path / "x.npy", np.random.default_rng().random((2000, columns)))
+    spec = {"domain": domain, "table": str(tmp_path / "map.npy"), "axis": [0, 0, 1]}
+    spec |= {} if interpolation is None else {"interpolation": interpolation}
+    with pytest.raises(FogproofError, match=message):
+        check_file(tmp_path / "x.npy", spec)
+
+
+@pytest.mark.parametrize("key", ["exact", "interpolation"])
+def test_keys_of_tables_are_refused_without_one(key):
+    with pytest.raises(FogproofError, match=f"{key} says something of a table"):
+        spec_of({"domain": "sphere", key: True if key == "exact" else "linear"}, "spec")
+
+
+def test_linear_is_meant_on_a_line(tmp_path):
+    np.savetxt(tmp_path / "pdf.csv", [[0, 0], [1, 2]], delimiter=",")
+    spec = {"domain": {"kind": "interval", "a": 0, "b": 1}, "table": str(tmp_path / "pdf.csv"), "exact": True}
+    path = written(tmp_path / "x.npy", np.sqrt(np.random.default_rng().random(20_000)))
+    for said in ({}, {"interpolation": "linear"}):
+        assert check_file(path, {**spec, **said}, Settings(alpha=1e-7)).verdict.outcome == "not rejected"

@@ -62,6 +62,8 @@ def test_page_puts_the_worst_first_and_tells_what_differs(tmp_path):
     rows = [row["data-status"] for row in page.all("tr") if "data-status" in row]
     assert rows == sorted(rows, key=["worse", "changed", "gone", "mended", "new", "same"].index)
     assert rows.count("new") == 1
+    places = {row["href"] for row in page.all("a")}
+    assert {"#todo", "#cases", "#whole", "#run"} <= places
     for text in ("1.2 → 3.4", "2.4.0", "3.0", "The seeds differ"):
         assert text in page.words
     assert {path.name for path in tmp_path.iterdir()} == {"comparison.html", "before.json", "after.json", "figures"}

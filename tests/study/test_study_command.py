@@ -133,3 +133,9 @@ def test_it_becomes_worse(ran, tmp_path):
     out = fogproof("study", folder / "study.toml", "-o", folder / "run", "--against", tmp_path)
     assert out.returncode == 1
     assert "against the earlier run: noisier: lit / airlight" in out.stderr
+    shown = fogproof("report", folder / "run", "--against", tmp_path)  # one comparison, whoever asks
+    assert shown.returncode == 1
+    page = (folder / "run" / "comparison.html").read_text()
+    assert "Noisier: lit / airlight" in page
+    assert "Something came out worse than before" in page
+    assert "Noisier: lit / airlight" in (folder / "run" / "index.html").read_text()

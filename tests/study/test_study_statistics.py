@@ -406,6 +406,13 @@ def test_nothing_changed_between_a_run_and_itself(record):
     assert found["text"] == "nothing changed beyond noise"
 
 
+def test_few_estimators_say_that_they_hardly_tell_a_change_of_speed(record):
+    few = copy.deepcopy(record)
+    few["scenes"] = few["scenes"][:1]
+    few["scenes"][0]["estimators"] = few["scenes"][0]["estimators"][:3]
+    assert compare(few, few)["text"].endswith("a change of speed is hardly told from a mood of the machine")
+
+
 def test_draws_are_the_same_whatever_the_checks_say_of_them(record):
     stricter = copy.deepcopy(record)
     stricter["digest"] = "0" * 64

@@ -35,7 +35,7 @@ from fogproof.contracts import Reference
 from fogproof.doing import doing
 from fogproof.domains import Domain
 
-_PATIENCE = 20.0  # seconds
+_PATIENCE = 60.0  # seconds
 
 
 def check_sampler(
@@ -238,7 +238,7 @@ class SamplerCheck:
 
 
 def explained(subject: Subject, verdict: Verdict) -> Verdict:
-    """Return a verdict with the cause that explains its rejection; the search for it takes no longer than the check, or 20 s."""
+    """Return a verdict with the cause that explains its rejection; the search takes no longer than the check, or a minute."""
     patience = max(verdict.seconds, _PATIENCE)
     cause, diagnosis = diagnosed(subject, verdict.findings, verdict.samples, verdict.seed, patience)
     return replace(verdict, cause=cause, diagnosis=diagnosis)

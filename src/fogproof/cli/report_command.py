@@ -8,7 +8,7 @@ import click
 
 from fogproof.cli.force import FORCE
 from fogproof.cli.terminal import say
-from fogproof.errors import InvalidInputError
+from fogproof.errors import FogproofError, InvalidInputError
 
 
 @click.command("report")
@@ -43,13 +43,17 @@ def command(folder: Path, older: Path | None, force: bool) -> int:
 
     record = read_record(folder)
     before = read_record(older) if older else None
-    code = 0 if before is None else compare_exit_code(before, record)
-    prepare_folder(folder, REPORT if before is None else (*REPORT, *COMPARISON), force)
     try:
+        if before is not None and before.get("kind") == record.get("kind") == "study":
+            from fogproof.study.history import compare
+
+            record["history"] = compare(before, record)
+        code = 0 if before is None else compare_exit_code(before, record)
+        prepare_folder(folder, REPORT if before is None else (*REPORT, *COMPARISON), force)
         page = write_report(record, folder, keep=True)
         if before is not None:
             page = write_comparison(before, record, folder)
-    except (InvalidInputError, OSError):
+    except (FogproofError, OSError):
         raise
     except Exception as error:  # whatever somebody made of a record that has passed its schema
         what = f"{type(error).__name__}: {error}"

@@ -18,6 +18,7 @@ from fogproof.domains import Domain
 from fogproof.errors import InvalidInputError, InvalidValueError, shorten
 from fogproof.input_files import read_text
 from fogproof.pipe.protocol import ESTIMATOR_COLUMNS, SAMPLER_COLUMNS
+from fogproof.pipe.tables import Interpolation
 from fogproof.scene import AnyMedium, PhaseFunction, Ray, Scene
 from fogproof.scene.files import read_fields
 from fogproof.scene.media import AnyMediumField
@@ -42,6 +43,7 @@ class Spec:
     phase        the oracle's density of directions about `axis`, or of the cosine on the interval [-1, 1]
     medium, ray  the oracle's density of collisions along the ray; past a finite end, the probability of reaching it is an atom
     table        a file with the density on a grid; see `fogproof.pipe.tables`
+    interpolation  of the table: "linear" between its points, or "constant" on each of its cells
     scene        the estimator's expectation is the oracle's radiance
     quantity     the same for any answer of the oracle: a request as for `fogproof oracle`
     reference    the same as plain numbers, `error` bounds how far they are from the truth
@@ -66,6 +68,7 @@ class Spec:
     ray: Ray | None = None
     table: str | None = None
     exact: bool = False
+    interpolation: Interpolation | None = None
     scene: Scene | None = None
     quantity: dict[str, Any] | None = None
     reference: Channels | None = None
@@ -104,6 +107,7 @@ _TYPES: dict[str, Any] = {
     "ray": (Ray | None, None),
     "table": (str | None, None),
     "exact": (bool, False),
+    "interpolation": (Interpolation | None, None),
     "scene": (Scene | None, None),
     "quantity": (dict[str, Any] | None, None),
     "reference": (Channels | None, None),
@@ -121,7 +125,11 @@ _TYPES: dict[str, Any] = {
 }
 
 _OF_ESTIMATORS = ("error", "variance", "cost", "bounds", "nonnegative", "tails", "tolerance")
-_OF_SAMPLERS = ("atoms", "events", "axis", "mean_cosine", "albedo", "uniform_bits", "quasi_random", "table", "exact")
+_OF_TABLES = ("exact", "interpolation")
+_OF_SAMPLERS = (
+    *("atoms", "events", "axis", "mean_cosine", "albedo", "uniform_bits", "quasi_random", "table"),
+    *_OF_TABLES,
+)
 
 
 def read_table(path: str | Path, what: str = "the spec file") -> dict[str, Any]:
@@ -197,6 +205,8 @@ def _require_use(spec: Spec, table: Mapping[str, Any], origin: str) -> None:
             raise InvalidInputError(
                 f"{origin}: {key} says something of {other}, and this is {is_one}; leave it out", key
             )
+        if key in _OF_TABLES and spec.table is None:
+            raise InvalidInputError(f"{origin}: {key} says something of a table, and none is given; leave it out", key)
 
 
 def _filled(value: Any, values: Mapping[str, float], origin: str) -> Any:

@@ -1,7 +1,8 @@
 """A density on a grid, from a file: the numbers that somebody plotted, or an environment map.
 
-CSV of two columns on a line (points, densities) or on the sphere (cosines to `axis`, densities per steradian): linear in between.
-`.npy` (h, w) on the unit square: constant on each cell, row h along the second coordinate, as an image lies.
+Two columns on a line (points, densities) or on the sphere (cosines to `axis`, densities per steradian): linear in between.
+(h, w) numbers on the unit square: constant on each cell, row h along the second coordinate, as an image lies. There a spec must say
+so, as an array of densities may as well be meant to be interpolated.
 
 A table of a curved density is not the density. How far linear interpolation is off is estimated by leaving out every second point
 (Richardson), and only so many samples are judged as cannot see it: n int (p' - p)^2 / p <= 1/10, a bound on the noncentrality of
@@ -13,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 
@@ -24,6 +26,7 @@ from fogproof.pipe.files import read_rows
 _UNSEEN = 0.1  # noncentrality that no test sees
 _SAME = 1e-6  # of an integral: printed digits
 _LEAST = 1000  # samples, fewer decide nothing
+Interpolation = Literal["linear", "constant"]
 _LINES = (Interval, HalfLine, RealLine)
 
 
@@ -38,17 +41,24 @@ class Table:
 
 
 def read_density(
-    path: Path, domain: Domain, axis: tuple[float, float, float] | None, exact: bool, mass: float = 1.0
+    path: Path,
+    domain: Domain,
+    axis: tuple[float, float, float] | None,
+    exact: bool,
+    mass: float = 1.0,
+    interpolation: Interpolation | None = None,
 ) -> Table:
     """Return the density that a file holds for a domain, or raise a `FogproofError` that names the file.
 
-    mass  its integral: what atoms leave
+    mass           its integral: what atoms leave
+    interpolation  linear on lines and the sphere, which is meant if it is None; constant on the square, which must be said
     """
+    if not isinstance(domain, (*_LINES, UnitSphere, UnitSquare)):
+        raise UnsupportedError(f"a table serves lines, the sphere and the square, not {domain}", "table")
+    _require_interpolation(domain, interpolation)
     rows, names = read_rows(path, 0, "float64")
     if isinstance(domain, UnitSquare):
         return _map(path, rows, mass)
-    if not isinstance(domain, (*_LINES, UnitSphere)):
-        raise UnsupportedError(f"a table serves lines, the sphere and the square, not {domain}", "table")
     if rows.shape[1] != 2 or len(rows) < 2:
         raise InvalidInputError(
             f"{path} must have two columns and at least two rows, got {list(rows.shape)}", str(path)
@@ -79,6 +89,22 @@ def read_density(
         return np.asarray(before[i] + t * (p[i] + 0.5 * slope * t))
 
     return Table(lambda y: _linear(x, p, y), cdf, most, notes)
+
+
+def _require_interpolation(domain: Domain, interpolation: Interpolation | None) -> None:
+    """Refuse what a domain's tables do not have, and a square's of which it is not said."""
+    square = isinstance(domain, UnitSquare)
+    if square and interpolation is None:
+        rule = "must be said of a table on the square: each number is the density of a cell"
+        raise InvalidValueError("interpolation", rule, None, 'interpolation = "constant"')
+    if square and interpolation == "linear":
+        fix = "give one density for each cell, as many cells as it needs"
+        raise UnsupportedError(f"a table on the square is constant on each cell, not linear; {fix}", "interpolation")
+    if not square and interpolation == "constant":
+        fix = "give each step by two points, one on either side"
+        raise UnsupportedError(
+            f"a table on {domain} is linear between its points, not constant; {fix}", "interpolation"
+        )
 
 
 def _broken(x: np.ndarray, p: np.ndarray, low: float, high: float, whole: bool) -> str:

@@ -58,7 +58,7 @@ def truth_of(spec: Spec, precision: Precision) -> KnownLaw:
         return _scattered(spec, spec.phase, spec.domain, atoms, precision)
     if spec.table is not None:
         left = max(1 - sum(atoms.values()), _TINY)
-        table = read_density(spec.folder / spec.table, spec.domain, spec.axis, spec.exact, left)
+        table = read_density(spec.folder / spec.table, spec.domain, spec.axis, spec.exact, left, spec.interpolation)
         return KnownLaw(
             table.density, spec.domain, atoms, spec.axis, spec.mean_cosine, table.cdf, table.most, table.notes
         )

@@ -30,6 +30,9 @@ def compare(before: dict[str, Any], after: dict[str, Any], alpha: float = 1e-6) 
     changes = [_change(old, young, scene, mood, wander, share) for scene, old, young in pairs]
     found = {word: [_title(c) for c in changes if word in c["became"]] for word in _WORDS}
     said = [f"{word}: {', '.join(names)}" for word, names in found.items() if names]
+    text = "; ".join(said) if said else "nothing changed beyond noise"
+    if sum(_time_ratio(old, young) is not None for _, old, young in pairs) < _LEAST:
+        text += f"; of less than {_LEAST} estimators a change of speed is hardly told from a mood of the machine"
     return {
         "before": {
             key: before[key] for key in ("title", "started", "fogproof", "fingerprint", "digest", "environment")
@@ -42,7 +45,7 @@ def compare(before: dict[str, Any], after: dict[str, Any], alpha: float = 1e-6) 
         "new": new,
         "changes": changes,
         "worse": bool(found["slower"] or found["noisier"] or found["biased"]),
-        "text": "; ".join(said) if said else "nothing changed beyond noise",
+        "text": text,
     }
 
 

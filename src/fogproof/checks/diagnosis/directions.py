@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from fogproof.checks.diagnosis import grids
 from fogproof.checks.diagnosis.contrast import Density
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting, known_number, of_points
 
@@ -78,6 +79,7 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
         known_number({2.0: "a square root of the cosine is missing", 0.5: "a square root too many"}),
         null=1.0,
     )
+    yield from grids.of_directions(setting)
 
 
 def _flat(setting: Setting) -> Iterator[Hypothesis]:

@@ -14,6 +14,7 @@ from fogproof.doing import doing
 _SCREENED = 1 << 12  # samples on which all hypotheses are tried first, with a few parameters each
 _TRIED = 12  # of them that are fitted closer, on as many samples as show the misfit
 _TELLING, _MOST = 200.0, 1 << 16  # chi-square of the misfit on those samples, and most of them
+_FALLEN, _DOUBLED = 0.3, 16  # of log-likelihood beside its maximum; times at most that an error is doubled
 _TIE = 1.5  # of log-likelihood: the simplest hypothesis may have so much less than the last one
 _APART = 3.0  # standard errors between a parameter and the claim's
 _NEAR = 0.1  # of the way from the null to the nearest trial: a first step
@@ -185,4 +186,14 @@ def _polished(setting: Setting, hypothesis: Hypothesis, value: float, error: flo
             break
         value += float(np.clip((above - below) / (2 * error * curvature), -3 * error, 3 * error))
         error = 1 / math.sqrt(curvature)
-    return kept
+    return kept[0], _reach(setting, hypothesis, *kept)
+
+
+def _reach(setting: Setting, hypothesis: Hypothesis, value: float, error: float) -> float:
+    """Return an error, doubled until the likelihood falls on both sides as it does at a standard error, by 1/2 or nearly."""
+    at = _likelihood(setting, hypothesis, value)
+    for _ in range(_DOUBLED):
+        if max(_likelihood(setting, hypothesis, value + step) for step in (-error, error)) <= at - _FALLEN:
+            break
+        error *= 2
+    return error

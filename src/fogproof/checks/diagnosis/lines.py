@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from fogproof.checks.diagnosis.grids import SHIFTS
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting, known_number
 from fogproof.domains import HalfLine, Interval, RealLine
 
@@ -84,7 +85,7 @@ def _turned_or_shifted_round(domain: Interval) -> Iterator[Hypothesis]:
         "shifted",
         "these samples fit the pdf shifted round by {value}",
         lambda s, d: lambda x: s.p(domain.a + (x - d - domain.a) % length),
-        tuple(length * f for f in (-0.25, -0.1, -0.05, -0.02, -0.01, 0.01, 0.02, 0.05, 0.1, 0.25)),
+        tuple(length * f for f in SHIFTS),
         null=0.0,
     )
 

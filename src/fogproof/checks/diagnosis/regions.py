@@ -9,10 +9,10 @@ from itertools import permutations
 import numpy as np
 
 from fogproof.checks.diagnosis.contrast import Density
+from fogproof.checks.diagnosis.grids import SHIFTS
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting, known_number, of_points
 from fogproof.checks.diagnosis.lines import SCALES, STRETCHED
 
-_SHIFTS = (-0.1, -0.05, -0.02, -0.01, -0.003, 0.003, 0.01, 0.02, 0.05, 0.1)
 _ENDLESS = 1e300  # between the ends of an unbounded axis as its known law has them
 _MOST_SWAPPED = 4  # dimensions
 
@@ -100,7 +100,7 @@ def _along(axis: int, low: float, high: float) -> Iterator[Hypothesis]:
         "shifted",
         f"these samples fit the pdf shifted round by {{value}} along axis {axis}",
         lambda s, d: lambda x: s.p(replaced(x, low + (x[:, axis] - d - low) % (high - low))),
-        tuple((high - low) * f for f in _SHIFTS),
+        tuple((high - low) * f for f in SHIFTS),
         null=0.0,
     )
     yield Hypothesis(

@@ -111,7 +111,7 @@ def whole(name: str, sums: tuple[Sums, ...], alpha: float) -> Finding:
         return Finding(name, "inconclusive", message, p, alpha)
     spread = 1 / math.sqrt(variance)
     step = (normal_quantile(alpha / 2) + normal_quantile(MISS)) * spread
-    resolution = Resolution("deviation from 1 of a factor on the pdf", step * (1 + step), MISS)
+    resolution = Resolution("deviation from 1 of a constant factor on the pdf", step * (1 + step), MISS)
     rejected = p <= alpha
     off = total * spread
     message = f"labels less their probabilities sum to {off:+.2f} standard deviations"
