@@ -79,6 +79,7 @@ class Synthetic(Method):
            sigma / count, normal, as of points that fill space evenly; "march", off by exactly sigma / steps^order
     fixed, each  seconds of a call and of a sample
     power  what the time of the samples grows with, if it is not their number
+    twin   tells equal ones apart, so that each draws numbers of its own
     """
 
     name: str
@@ -88,6 +89,7 @@ class Synthetic(Method):
     order: float = 0.5
     bias_of: float = 0.0
     power: float = 1.0
+    twin: int = 0
     clock: ClassVar[Clock]
     quantity = "transmittance"
 
@@ -243,7 +245,7 @@ def main() -> int:
     parser.add_argument("-o", "--output", type=Path)
     arguments = parser.parse_args()
     seed = fresh_seed()
-    laws = arguments.equal * (Synthetic("independent", 0.5, 2e-5, 1e-7),) or LAWS
+    laws = tuple(Synthetic("independent", 0.5, 2e-5, 1e-7, twin=k) for k in range(arguments.equal)) or LAWS
     all_, good = Counter[str](), Counter[str]()
     for k in range(arguments.studies):
         for sort, holds in held(study((seed + k) % 2**62, laws), laws):

@@ -6,6 +6,7 @@ of a file in PYTHONPATH, ends in a sentence: Python runs `fogproof/__init__.py`,
 
 from __future__ import annotations
 
+import importlib
 import os
 import sys
 
@@ -19,8 +20,13 @@ def begin() -> None:
         del sys.path[0]
     from fogproof_command import explain, prepare
 
-    prepare()
     sys.excepthook = lambda kind, error, trace: explain(error)
+    try:
+        prepare()
+        importlib.import_module("fogproof.domains")  # NumPy; a module that ends the process would end it without a word
+        importlib.import_module("fogproof.cli")
+    except (Exception, SystemExit) as error:
+        explain(error)
 
 
 if sys.argv[:1] == ["-m"]:  # while Python looks for the module; by the command line alone

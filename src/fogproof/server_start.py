@@ -5,18 +5,20 @@ from __future__ import annotations
 import contextlib
 import importlib
 import os
+import sys
 
 from fogproof.servers import OURS, PRELOAD
 
 
 def begin(modules: list[str]) -> None:
     """Begin a server. A module that cannot be loaded is for those to find who need it."""
+    sys.excepthook = lambda kind, error, trace: None  # whoever asked says it: that too many files are open, say
     with contextlib.suppress(OSError, AttributeError):  # it leads one already; a system without sessions
         os.setsid()
     if os.environ.get("PYTHONSAFEPATH") == OURS:
         del os.environ["PYTHONSAFEPATH"]
     for module in modules:
-        with contextlib.suppress(Exception):
+        with contextlib.suppress(Exception, SystemExit):
             importlib.import_module(module)
 
 

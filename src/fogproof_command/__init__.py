@@ -6,7 +6,6 @@ A package of its own, because Python runs `fogproof/__init__.py` before any modu
 from __future__ import annotations
 
 import os
-import signal
 import sys
 
 from fogproof_command.startup import FAULT, end_of
@@ -18,10 +17,10 @@ if TYPE_CHECKING:
 
 def main() -> None:
     """Run the command line; a signal before it listens, or after, ends the process with one word and the usual code."""
-    prepare()
     try:
+        prepare()
         from fogproof.cli import main as command_line
-    except Exception as error:
+    except (Exception, SystemExit) as error:  # a module may end the process with 0, which would be a verdict
         explain(error)
     else:
         command_line()
@@ -29,6 +28,8 @@ def main() -> None:
 
 def prepare() -> None:
     """Listen to signals while modules are loaded, and mind the system's limits."""
+    import signal  # here, where a file in its place can be named
+
     for name in ("SIGINT", "SIGTERM", "SIGHUP", "SIGXCPU"):
         number = getattr(signal, name, None)
         if number is not None and signal.getsignal(number) is not signal.SIG_IGN:

@@ -13,18 +13,35 @@ FAULT = 70
 _NO_ROOM = ("failed to map segment", "cannot allocate memory", "cannot apply additional memory protection")
 
 
+class StandInError(SystemExit):
+    """A module in another's place asked for the end of the process: no `except Exception` on the way takes it for a subject's."""
+
+
 def end_of(error: BaseException) -> tuple[str, int]:
     """Return the sentence and the exit code for an error while modules are loaded; the code is `FAULT` if it is our own."""
+    if isinstance(error, StandInError):
+        return str(error), BAD_INPUT
     behind = _behind(error)
     if any(isinstance(one, MemoryError) or any(words in str(one).lower() for words in _NO_ROOM) for one in behind):
         return "there is not enough memory to load what this needs; allow more (ulimit -v)", BAD_INPUT
-    for one in behind:
+    stands = stand_in(error)
+    if stands:
+        return stands, BAD_INPUT
+    if isinstance(error, SystemExit):
+        last = (_passed(error) or ["what is loaded"])[0]
+        return f"{last} ends the process (exit code {error.code or 0}), before a result was there; mend it", BAD_INPUT
+    return f"{type(error).__name__}: {error}", FAULT
+
+
+def stand_in(error: BaseException) -> str:
+    """Return the sentence for an error by a file that stands in a module's place, "" for any other."""
+    for one in _behind(error):
         for filename in (*_passed(one), _asked(one)):
             name = shadowed(filename)
             if name:
                 where = f"{filename} stands in the place of the module {name}"
-                return f"{where}; rename it, or take its folder out of PYTHONPATH", BAD_INPUT
-    return f"{type(error).__name__}: {error}", FAULT
+                return f"{where}; rename it, or take its folder out of PYTHONPATH"
+    return ""
 
 
 def shadowed(filename: str) -> str:

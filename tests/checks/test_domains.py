@@ -179,3 +179,11 @@ def test_a_sampler_may_miss_the_end_of_its_support_by_rounding():
     assert "9e-12 of the domain's size" in str(verdict)
     far = check_sampler(*equiangular(1e-3), Interval(0, 10), dimensions=1, samples=20_000, alpha=1e-7)
     assert "of the domain's size" not in str(far)
+    beside = check_sampler(
+        lambda u: -np.log1p(-u[:, 0]) - 1e-6,
+        lambda t: np.exp(-t - 1e-6),
+        HalfLine(0),
+        dimensions=1,
+        samples=20_000,
+    )
+    assert "9e-12 of the domain's size" in str(beside)

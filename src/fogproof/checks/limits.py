@@ -16,6 +16,7 @@ from typing import Any, TypeVar
 from fogproof import servers
 from fogproof.errors import FogproofError, SubjectError, UnsupportedError
 from fogproof.validate import time_limit
+from fogproof_command.startup import StandInError, stand_in
 
 Answer = TypeVar("Answer")
 
@@ -57,6 +58,8 @@ def end_isolated() -> None:
 
 
 _NAME = "fogproof subject"
+_CLOSED = 74
+"""The exit code of a process that cannot send its answer: EX_IOERR of sysexits.h."""
 
 
 def _answer_of(context: Any, seconds: float | None, check: Callable[[], Answer]) -> Answer:
@@ -76,7 +79,7 @@ def _answer_of(context: Any, seconds: float | None, check: Callable[[], Answer])
             good, answer = ours.recv()
         except EOFError:
             child.join()
-            raise SubjectError(f"the subject ended the process, exit code {child.exitcode}", "sample") from None
+            raise SubjectError(_without_answer(child.exitcode), "sample") from None
     finally:
         if child.pid is not None:
             with contextlib.suppress(OSError, AttributeError):  # with all that it started and left in its session
@@ -84,10 +87,18 @@ def _answer_of(context: Any, seconds: float | None, check: Callable[[], Answer])
         child.kill()
         child.join()
         ours.close()
+    if good is None:
+        raise StandInError(answer)
     if not good:
         raise SubjectError(*answer)
     returned: Answer = answer
     return returned
+
+
+def _without_answer(code: int) -> str:
+    if code == _CLOSED:
+        return "the subject closed files that others had opened (descriptors from 3 on); let it close its own alone"
+    return f"the subject ended the process, exit code {code}"
 
 
 def _no_process(error: BaseException) -> OSError:
@@ -104,12 +115,21 @@ def _answer(check: Callable[[], object], pipe: multiprocessing.connection.Connec
     assert parent is not None
     with contextlib.suppress(RuntimeError):  # where no more threads may be started nothing watches
         threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True).start()
+
+    def send(answer: object) -> None:
+        try:
+            pipe.send(answer)
+        except OSError:  # our parent is gone, or hears nothing but this number
+            os._exit(_CLOSED)
+
     try:
-        pipe.send((True, check()))
+        send((True, check()))
     except FogproofError as error:
-        pipe.send((False, (str(error), error.path)))
+        send((False, (str(error), error.path)))
+    except SystemExit as error:  # the subject's own does not come so far
+        send((None, stand_in(error)) if stand_in(error) else (False, (f"SystemExit: {error}", "sample")))
     except BaseException as error:  # the parent must hear of it, whatever it is
-        pipe.send((False, (f"{type(error).__name__}: {error}".removesuffix(": "), "sample")))
+        send((False, (f"{type(error).__name__}: {error}".removesuffix(": "), "sample")))
 
 
 def _end_with(sentinel: int) -> None:

@@ -91,7 +91,7 @@ class Watch:
         """Check one batch; return (n,) which samples are good points of the continuous part, and (good,) the pdf there."""
         subject, x = self.subject, draw.x
         within = inside(subject, draw)
-        few = few_digits(subject, x[~within]) or nearly(subject, x[~within])
+        few = few_digits(subject, x[~within]) or nearly(subject, x, ~within)
         self._note("domain", ~within, lambda i: f"x = {shorten(x[i])} is not a point of {subject.domain}{few}", len(x))
         good = within
         if subject.atoms:

@@ -25,9 +25,11 @@ def few_digits(subject: Subject, x: np.ndarray) -> str:
     return f"; {digits.words}" if bool(np.all(subject.domain.contains(x, slack))) else ""
 
 
-def nearly(subject: Subject, x: np.ndarray) -> str:
-    """Return in words that points lie beyond an end by little, and by how much they may; "" if not so."""
-    if isinstance(subject.domain, Discrete) or not len(x) or not bool(np.all(subject.domain.contains(x, _NEARLY))):
+def nearly(subject: Subject, x: np.ndarray, outside: np.ndarray) -> str:
+    """Return in words that those of the points that lie outside do by little, and by how much they may; "" if not so."""
+    if isinstance(subject.domain, Discrete) or not outside.any():
+        return ""
+    if not bool(np.all(subject.domain.contains(x, _NEARLY)[outside])):  # of a half line, all points tell the size
         return ""
     forgiven = at_the_ends(16 * subject.roundoff)  # as in `in_domain`
     return f", beyond an end by more than rounding explains, {forgiven:.0e} of the domain's size: clamp it"

@@ -18,7 +18,7 @@ import click
 
 from fogproof.cli.signals import code_of, stoppable
 from fogproof.cli.terminal import BAD_INPUT, FAULT, UNREAD, code_of_stdout, say, silence, wait_for_streams
-from fogproof.errors import FogproofError, stop_behind
+from fogproof.errors import FogproofError, InvalidValueError, stop_behind
 from fogproof.text import one_line
 
 _COMMANDS = {
@@ -41,6 +41,10 @@ _COMMANDS = {
 }
 
 
+_EPOCH = "SOURCE_DATE_EPOCH"
+_LAST = 253402300799  # the end of the year 9999
+
+
 class _LazyGroup(click.Group):
     """A group whose commands live in modules of the same name."""
 
@@ -59,6 +63,7 @@ class _LazyGroup(click.Group):
 
     def invoke(self, ctx: click.Context) -> Any:
         try:
+            _require_epoch(os.environ.get(_EPOCH))
             with _seen_as_unread():
                 return super().invoke(ctx) or code_of_stdout(ctx)
         except Exception as error:
@@ -100,8 +105,6 @@ def _run(arguments: list[str] | None) -> int:
         code = cli.main(arguments, standalone_mode=False)
         if sys.stdout is not None:
             sys.stdout.flush()
-    except SystemExit as end:
-        raise end
     except FogproofError as error:
         code = _say(error, BAD_INPUT)
     except click.ClickException as error:
@@ -125,9 +128,17 @@ def _run(arguments: list[str] | None) -> int:
         code = _say("the system allows no more threads; end some, or raise its limit (ulimit -u)", BAD_INPUT)
     except MemoryError:
         code = _say("there is not enough memory for this; ask for less at a time", BAD_INPUT)
-    except Exception as error:
+    except (Exception, SystemExit) as error:  # nothing of ours asks for the end: a module that is loaded does
         code = _fault(error)
     return code
+
+
+def _require_epoch(told: str | None) -> None:
+    """Refuse an environment variable that libraries read: they would fail by it in the midst of a case, and it would be blamed."""
+    if told is None or (told.isascii() and told.isdigit() and int(told[:20]) <= _LAST):
+        return
+    rule = f"must be a whole number of seconds since 1970, from 0 to {_LAST}"
+    raise InvalidValueError(f"the environment variable {_EPOCH}", rule, told, "unset it, or mend it")
 
 
 def _of_the_system(error: OSError) -> str:
@@ -136,7 +147,9 @@ def _of_the_system(error: OSError) -> str:
     return f"{error.strerror or error}{f': {error.filename}' if error.filename else ''}"
 
 
-def _fault(error: Exception) -> int:
+def _fault(error: BaseException) -> int:
+    if isinstance(error, SystemExit) and os.environ.get("_FOGPROOF_COMPLETE"):
+        raise error  # click's, where a shell completes a word
     from fogproof_command.startup import end_of  # an environment made before it was there works all the same
 
     explained, known = end_of(error)

@@ -135,7 +135,8 @@ def _of_file(path: Path, base: Spec, settings: Settings) -> Checked:
             fix = "give a column of densities, or phase, medium or table in the spec"
             raise InvalidInputError(f"{path} has no densities; {fix}", "columns")
         subject = _subject(base, truth, _never, _never, precision)
-        verdict = check_ratios(subject, draw, settings.alpha, settings.seed)
+        with np.errstate(all="ignore"):  # what is infinite or undefined is found, not warned of
+            verdict = check_ratios(subject, draw, settings.alpha, settings.seed)
         return Checked(_unless_swapped(verdict, subject, draw, settings))
     recorded = Recorded(draw)
     subject = _subject(base, truth, recorded.sample, partial(_value, truth), precision, recorded.pilot)

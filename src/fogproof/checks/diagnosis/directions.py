@@ -75,7 +75,7 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
         "missing square root",
         "these samples fit the pdf with the cosine raised to the power {value}",
         lambda s, a: s.moved(_cosine_to(1 / a), lambda x: np.abs(x[:, 2]) ** (1 / a - 1) / a),
-        (0.5, 0.7, 1.5, 2.0, 3.0),
+        (0.5, 0.7, 0.9, 0.97, 1.03, 1.1, 1.5, 2.0, 3.0),
         known_number({2.0: "a square root of the cosine is missing", 0.5: "a square root too many"}),
         null=1.0,
     )

@@ -1,0 +1,70 @@
+"""A module that ends the process, or fails by its surroundings, gives no verdict and blames no case: a sentence, and 2."""
+
+import os
+import subprocess
+import sys
+from functools import partial
+
+import pytest
+from fuzz_commands import Run, here
+
+from fogproof.checks.limits import within
+from fogproof.cli.commands import cli, main
+from fogproof.cli.terminal import BAD_INPUT
+from fogproof.errors import SubjectError
+from fogproof_command.startup import StandInError
+
+POSIX = pytest.mark.skipif(os.name != "posix", reason="needs processes that are forked")
+CONSOLE = [sys.executable, "-c", "import sys; sys.path.pop(0); from fogproof_command import main; main()"]
+
+
+@pytest.mark.parametrize("start", [CONSOLE, [sys.executable, "-m", "fogproof"]], ids=["console", "module"])
+@pytest.mark.parametrize("name", ["signal", "numpy"])
+def test_a_module_that_ends_the_process_gives_no_verdict(tmp_path, start, name):
+    (tmp_path / f"{name}.py").write_text("raise SystemExit(0)")
+    env = {**os.environ, "PYTHONPATH": str(tmp_path)}
+    done = subprocess.run([*start, "list"], capture_output=True, env=env, check=False)
+    assert done.returncode == BAD_INPUT
+    assert done.stderr.startswith(f"fogproof: {tmp_path}/{name}.py stands in the place of the module {name}".encode())
+
+
+def ends(path):
+    exec(compile("raise SystemExit(0)", path, "exec"))
+
+
+def test_a_module_that_ends_a_command_gives_no_verdict(tmp_path, monkeypatch, capfd):
+    monkeypatch.setattr(cli, "main", lambda *arguments, **extra: ends(str(tmp_path / "scipy.py")))
+    with pytest.raises(SystemExit) as end:
+        main(["list"])
+    assert end.value.code == BAD_INPUT
+    assert "scipy.py stands in the place of the module scipy" in capfd.readouterr().err
+
+
+@POSIX
+def test_a_module_that_ends_a_case_is_no_outcome_of_it(tmp_path):
+    with pytest.raises(StandInError, match=r"scipy\.py stands in the place"):
+        within(60, partial(ends, str(tmp_path / "scipy.py")))
+    with pytest.raises(SubjectError, match="SystemExit"):
+        within(60, partial(ends, str(tmp_path / "mine.py")))
+
+
+@POSIX
+def test_a_subject_that_closes_all_files_is_told_so(capfd):
+    with pytest.raises(SubjectError, match="closed files that others had opened"):
+        within(60, partial(os.closerange, 3, 99))
+    assert capfd.readouterr().err == ""
+
+
+def test_a_server_of_processes_that_fails_leaves_it_to_who_asked():
+    fails = "from fogproof.server_start import begin; begin([]); raise EOFError"
+    done = subprocess.run([sys.executable, "-c", fails], capture_output=True, check=False)
+    assert (done.returncode, done.stderr) == (1, b"")
+
+
+@pytest.mark.parametrize("told", ["abc", "", "-1", "1.5", "9" * 17, "9" * 9999, "²"])
+def test_a_date_that_libraries_cannot_read_is_named(monkeypatch, told):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", told)
+    end = here(Run(["list"]))
+    assert (end.code, b"SOURCE_DATE_EPOCH must be a whole number of seconds" in end.err) == (BAD_INPUT, True)
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+    assert here(Run(["list", "fog/*"])).code == 0
