@@ -141,3 +141,22 @@ def test_what_cannot_be_read(
 def test_what_cannot_be_written(filled: Callable[[list[str]], list[str]], command: str) -> None:
     refused(here(Run([command, *filled(WRITES[command])])))
     assert Path("taken").read_text() == "somebody's"
+
+
+@pytest.mark.parametrize("command", WRITES)
+def test_an_output_without_a_name(filled: Callable[[list[str]], list[str]], command: str) -> None:
+    """An unset variable of the shell is not the folder one stands in."""
+    words = filled(WRITES[command])
+    before = sorted(Path().rglob("*"))
+    end = here(Run([command, *words[:-1], ""]))
+    refused(end)
+    assert b"is empty: name a file or folder" in end.err
+    assert sorted(Path().rglob("*")) == before
+
+
+@pytest.mark.parametrize("command", [name for name, words in WRITES.items() if words[-1] == "{taken}"])
+def test_an_output_that_is_no_folder_is_said_to_be_none(filled: Callable[[list[str]], list[str]], command: str) -> None:
+    Path("link").symlink_to("nowhere")
+    words = filled(WRITES[command])
+    assert b"'taken' is a file" in here(Run([command, *words])).err
+    assert b"link is a link that leads nowhere" in here(Run([command, *words[:-1], "link"])).err

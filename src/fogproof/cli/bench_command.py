@@ -13,7 +13,7 @@ import click
 from fogproof.cli.force import FORCE
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
-from fogproof.cli.values import SECONDS_OR_NONE
+from fogproof.cli.values import FOLDER, SECONDS_OR_NONE
 
 
 @click.command("bench")
@@ -23,7 +23,7 @@ from fogproof.cli.values import SECONDS_OR_NONE
     "--output",
     "folder",
     metavar="DIR",
-    type=click.Path(path_type=Path, file_okay=False),
+    type=FOLDER,
     help="Write bench.json, bench.md and figures here, and add to bench.jsonl, the history.",
 )
 @click.option(

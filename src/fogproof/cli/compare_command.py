@@ -9,7 +9,7 @@ import click
 
 from fogproof.cli.force import FORCE
 from fogproof.cli.terminal import say
-from fogproof.cli.values import PROBABILITY, RELATIVE
+from fogproof.cli.values import FOLDER, PROBABILITY, RELATIVE
 from fogproof.images.compare import compare_image
 from fogproof.images.judging import ALPHA, TOLERANCE, ImageComparison
 from fogproof.images.pairs import compare_pictures
@@ -39,7 +39,7 @@ SCENES = (".toml", ".json")
 @click.option(
     "--report",
     "folder",
-    type=click.Path(path_type=Path, file_okay=False),
+    type=FOLDER,
     help="Write the page, maps and results here.",
 )
 @FORCE

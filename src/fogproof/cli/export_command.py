@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from fogproof.cli.terminal import say
+from fogproof.cli.values import FILE
 
 
 @click.command("export")
@@ -18,9 +19,7 @@ from fogproof.cli.terminal import say
     type=click.Choice(["mitsuba", "cycles", "pbrt", "json"]),
     help="For which renderer.",
 )
-@click.option(
-    "-o", "--output", type=click.Path(path_type=Path, dir_okay=False), help="Write here instead of to stdout."
-)
+@click.option("-o", "--output", type=FILE, help="Write here instead of to stdout.")
 def command(scene: str, target: str, output: Path | None) -> int:
     """Write a scene for another renderer: a script for its own Python, `python SCRIPT OUT.exr`, a file of pbrt-v4, or plain JSON.
 

@@ -9,6 +9,7 @@ import click
 from fogproof.cli.force import FORCE
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
+from fogproof.cli.values import FOLDER
 
 
 @click.command("gallery")
@@ -19,7 +20,7 @@ from fogproof.cli.terminal import say
     "folder",
     required=True,
     metavar="DIR",
-    type=click.Path(path_type=Path, file_okay=False),
+    type=FOLDER,
     help="Write the page and the pictures here.",
 )
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of everything sampled.")

@@ -7,12 +7,14 @@ import math
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import click
 
 from fogproof.cli.answer_timeout import answer_timeout
 from fogproof.cli.terminal import requests_on_stdin
+from fogproof.cli.values import FILE
 from fogproof.errors import FogproofError, InvalidInputError, TooLargeError, shorten
 from fogproof.golden import Entry, golden_entries, to_c, to_csv, to_json_document, to_npz
 from fogproof.input_files import read_requests
@@ -31,8 +33,8 @@ _TOLD = 10  # bad lines
     "--requests", metavar="FILE|-", help="Lines of JSON as for `fogproof oracle`: the questions to be answered."
 )
 @answer_timeout
-@click.option("-o", "--output", metavar="FILE", help="Where to write, stdout unless given.")
-def command(quantities: tuple[str, ...], kind: str, requests: str | None, timeout: float, output: str | None) -> int:
+@click.option("-o", "--output", metavar="FILE", type=FILE, help="Where to write, stdout unless given.")
+def command(quantities: tuple[str, ...], kind: str, requests: str | None, timeout: float, output: Path | None) -> int:
     """Write reference values with error bounds and conventions, for test suites that run without fogproof.
 
     Without --requests these are the proven values of each QUANTITY, if there are any, and its example

@@ -13,6 +13,7 @@ import click
 
 from fogproof.cli.answer_timeout import answer_timeout
 from fogproof.cli.terminal import requests_on_stdin, say
+from fogproof.cli.values import FILE
 from fogproof.errors import InvalidInputError
 from fogproof.input_files import read_requests
 from fogproof.oracle import Limits, schema, serve
@@ -24,7 +25,7 @@ from fogproof.quantities import quantities
 @click.option(
     "-o",
     "--output",
-    type=click.Path(path_type=Path, dir_okay=False),
+    type=FILE,
     help="Write the image of SCENE.toml here: .exr, .npy or .pfm.",
 )
 @click.option("--list", "as_list", is_flag=True, help="List the quantities with units, conventions and arguments.")

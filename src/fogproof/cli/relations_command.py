@@ -12,14 +12,14 @@ import click
 from fogproof.cli.force import FORCE
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
-from fogproof.cli.values import PROBABILITY, RELATIVE, SECONDS
+from fogproof.cli.values import FOLDER, PLACE, PROBABILITY, RELATIVE, SECONDS
 from fogproof.images.judging import ALPHA, TOLERANCE
 from fogproof.images.relation_run import RelationRun, count_relations, run_relations, write_record
 from fogproof.renderers.table import renderer_of
 
 
 @click.command("relations")
-@click.argument("scenes", nargs=-1, required=True, metavar="SCENE.toml...", type=click.Path(path_type=Path))
+@click.argument("scenes", nargs=-1, required=True, metavar="SCENE.toml...", type=PLACE)
 @click.option(
     "--with",
     "renderer",
@@ -28,7 +28,7 @@ from fogproof.renderers.table import renderer_of
     help="mitsuba, cycles, or a command with {scene} and {out}; {samples}, {seed}, {threads} and {integrator} may stand in it.",
 )
 @click.option(
-    "-o", "--output", "folder", required=True, metavar="DIR", type=click.Path(path_type=Path, file_okay=False),
+    "-o", "--output", "folder", required=True, metavar="DIR", type=FOLDER,
     help="Renders, record and page land here; a run that was stopped goes on.",
 )  # fmt: skip
 @click.option("--only", multiple=True, metavar="PATTERN", help="Relations by name, such as 'moved/*'; repeatable.")

@@ -12,14 +12,14 @@ import click
 from fogproof.cli.force import FORCE
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
-from fogproof.cli.values import PROBABILITY, RELATIVE, SECONDS
+from fogproof.cli.values import FOLDER, PLACE, PROBABILITY, RELATIVE, SECONDS
 from fogproof.images.judging import ALPHA, TOLERANCE
 from fogproof.images.renders import Wanted, render_scenes, write_page
 from fogproof.renderers.table import renderer_of
 
 
 @click.command("render")
-@click.argument("scenes", nargs=-1, required=True, metavar="SCENE.toml...", type=click.Path(path_type=Path))
+@click.argument("scenes", nargs=-1, required=True, metavar="SCENE.toml...", type=PLACE)
 @click.option(
     "--with",
     "renderer",
@@ -28,7 +28,7 @@ from fogproof.renderers.table import renderer_of
     help="mitsuba, cycles, or a command with {scene} and {out}.",
 )
 @click.option(
-    "-o", "--output", "folder", required=True, metavar="DIR", type=click.Path(path_type=Path, file_okay=False),
+    "-o", "--output", "folder", required=True, metavar="DIR", type=FOLDER,
     help="Images, records and the page land here; a run that was stopped goes on.",
 )  # fmt: skip
 @click.option("--samples", type=click.IntRange(min=1), default=256, show_default=True, help="Samples a pixel.")

@@ -8,16 +8,17 @@ import click
 
 from fogproof.cli.force import FORCE
 from fogproof.cli.terminal import say
+from fogproof.cli.values import PLACE
 from fogproof.errors import FogproofError, InvalidInputError
 
 
 @click.command("report")
-@click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
+@click.argument("folder", metavar="DIR", type=PLACE)
 @click.option(
     "--against",
     "older",
     metavar="OLD",
-    type=click.Path(path_type=Path),
+    type=PLACE,
     help="Compare with an older run's folder as well: what came out worse, what was mended.",
 )
 @FORCE

@@ -14,6 +14,7 @@ import click
 from fogproof.cli.force import FORCE
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
+from fogproof.cli.values import FOLDER
 
 
 @click.command("stability")
@@ -23,7 +24,7 @@ from fogproof.cli.terminal import say
     "--output",
     "folder",
     metavar="DIR",
-    type=click.Path(path_type=Path, file_okay=False),
+    type=FOLDER,
     help="Write stability.html, stability.json and stability.csv here; a page of `verify` beside them gets a section.",
 )
 @click.option(

@@ -14,18 +14,19 @@ import click
 from fogproof.cli.force import FORCE
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
+from fogproof.cli.values import FOLDER, PLACE
 from fogproof.text import duration, one_line
 
 
 @click.command("study")
-@click.argument("study", metavar="STUDY.toml", type=click.Path(path_type=Path))
+@click.argument("study", metavar="STUDY.toml", type=PLACE)
 @click.option(
     "-o",
     "--output",
     "folder",
     required=True,
     metavar="DIR",
-    type=click.Path(path_type=Path),
+    type=FOLDER,
     help="Run folder; the same one goes on where it stopped.",
 )
 @click.option(
@@ -39,7 +40,7 @@ from fogproof.text import duration, one_line
 @click.option(
     "--against",
     metavar="DIR",
-    type=click.Path(path_type=Path),
+    type=PLACE,
     help="Earlier run to compare with: what became slower, noisier or biased, beyond noise.",
 )
 @click.option("--salvage", is_flag=True, help="Put a damaged store aside and go on with what can be read of it.")

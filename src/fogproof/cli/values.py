@@ -1,9 +1,12 @@
-"""Numbers that options take, judged before anything runs: what no run could use is bad usage, not an outcome."""
+"""Numbers and paths that options take, judged before anything runs: what no run could use is bad usage, not an outcome."""
 
 from __future__ import annotations
 
 import math
+import os
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 import click
 
@@ -46,3 +49,25 @@ RELATIVE = _Number(0, 1, closes=False)
 """A relative error that does not matter."""
 
 POSITIVE = _Number(0, math.inf, opens=True, closes=False)
+
+
+class _Path(click.Path):
+    """A path; "" is none: `Path("")` would be the folder one stands in, though a variable of the shell was not set."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Return the path, or say what stands in its way."""
+        if not os.fspath(value):
+            self.fail("is empty: name a file or folder; a variable of the shell may not be set", param, ctx)
+        if not self.file_okay and os.path.islink(value) and not os.path.exists(value):
+            self.fail(f"{value} is a link that leads nowhere; remove it, or make what it leads to", param, ctx)
+        return super().convert(value, param, ctx)
+
+
+FOLDER = _Path(path_type=Path, file_okay=False)
+"""A folder to write into, which may not be there yet."""
+
+FILE = _Path(path_type=Path, dir_okay=False, readable=False)
+"""A file to write, or a device."""
+
+PLACE = _Path(path_type=Path)
+"""What is read: whether it is there, and what it is, is said where it is opened."""

@@ -15,7 +15,7 @@ from fogproof.checks import fresh_seed
 from fogproof.cli.force import FORCE
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
-from fogproof.cli.values import PROBABILITY, SECONDS
+from fogproof.cli.values import FOLDER, PROBABILITY, SECONDS
 from fogproof.text import one_line, p_value
 from fogproof.verify import ALPHA, Result, exit_code, record, reproduce, run, select, shares
 
@@ -25,7 +25,7 @@ from fogproof.verify import ALPHA, Result, exit_code, record, reproduce, run, se
 @click.option(
     "--report",
     "folder",
-    type=click.Path(path_type=Path, file_okay=False),
+    type=FOLDER,
     help="Write the page, figures and results here.",
 )
 @click.option(

@@ -13,7 +13,7 @@ from fogproof.checks import fresh_seed
 from fogproof.cli.force import FORCE
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
-from fogproof.cli.values import PROBABILITY
+from fogproof.cli.values import FOLDER, PROBABILITY
 
 
 @click.command("zoo")
@@ -23,7 +23,7 @@ from fogproof.cli.values import PROBABILITY
     "--output",
     "folder",
     metavar="DIR",
-    type=click.Path(path_type=Path, file_okay=False),
+    type=FOLDER,
     help="Keep the rows in DIR/zoo.jsonl, where a stopped run goes on, and write DIR/zoo.md.",
 )
 @click.option(
