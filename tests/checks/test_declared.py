@@ -132,3 +132,17 @@ def test_anything_that_holds_numbers_is_an_array(wrap):
 def test_every_error_is_ours():
     assert issubclass(InvalidValueError, FogproofError)
     assert issubclass(SubjectError, FogproofError)
+
+
+@pytest.mark.parametrize(("integral", "told"), [(1.0, True), (0.9, False)])
+def test_lost_samples_that_nothing_tells_are_unchecked(integral, told):
+    """A pdf that integrates to the share of valid samples says how many may be lost; one of the valid ones alone does not."""
+    verdict = check_sampler(
+        lambda u: Draw(u[:, 0], valid=u[:, 1] >= 0.1),
+        lambda x: np.full(len(x), integral),
+        UNIT,
+        dimensions=2,
+        samples=20_000,
+    )
+    assert verdict.outcome == "not rejected", str(verdict)
+    assert any("are given up" in what for what in verdict.unchecked) == told, str(verdict)

@@ -80,6 +80,16 @@ class Prepared:
         whole = abs(total + sum(self.subject.atoms.values()) - 1) <= error + FLOOR[self.subject.precision]
         return (1 - sum(self.subject.atoms.values()), valid) if whole else (total, tally.drawn)
 
+    def unheld(self, tally: Tally) -> tuple[str, ...]:
+        """Return in words that the share of samples given up is held to nothing: neither the pdf nor the mean weight tells it."""
+        told = self.integral is not None and self.convention(tally)[1] == tally.drawn
+        if not tally.given_up or told or (tally.weights and self.subject.albedo is not None):
+            return ()
+        known = "the pdf is" if self.integral is not None else "no integral is known; the pdf may be"
+        return (
+            f"that {tally.given_up / tally.drawn:.3g} of the samples are given up: {known} that of the valid ones alone",
+        )
+
     def normalisation(self, tally: Tally) -> Finding:
         """Return the finding on the integral of the pdf."""
         if self.integral is None:

@@ -233,7 +233,11 @@ class SamplerCheck:
             settings,
             likely_cause(findings),
             reproduce,
-            unchecked=(*unchecked(subject, pilot.channels, bool(pilot.labels)), *self.prepared.disbelieved),
+            unchecked=(
+                *unchecked(subject, pilot.channels, bool(pilot.labels)),
+                *self.prepared.unheld(tally),
+                *self.prepared.disbelieved,
+            ),
         )
 
 
