@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from planted_samplers import box, line, lobe, square, stream, table, weighted, with_atoms, with_events
+from planted_samplers import box, line, lobe, square, stream, table, volume, weighted, with_atoms, with_events
 
 from fogproof.checks import Subject
 from fogproof.contracts import Draw
@@ -69,6 +69,19 @@ def _uneven_line(subject: Subject, size: float, trial: int, up: bool, cells: int
     return _by_line(
         subject, _with_density(lambda x: np.where(chosen[np.minimum((x * cells).astype(int), cells - 1)], high, low))
     )
+
+
+def _uneven_axis(subject: Subject, size: float, trial: int, up: bool, cells: int) -> Subject:
+    share, high, low = _two_level(size, up)
+    chosen = np.random.default_rng(trial).permutation(cells) < share * cells
+    along = _with_density(lambda x: np.where(chosen[np.minimum((x * cells).astype(int), cells - 1)], high, low))
+
+    def sample(u: np.ndarray) -> np.ndarray:
+        x = u.copy()
+        x[:, trial % 3] = along(u[:, trial % 3])
+        return x
+
+    return replace(subject, sample=sample)
 
 
 def _uneven_plane(subject: Subject, size: float, trial: int, up: bool, cells: int) -> Subject:
@@ -239,6 +252,7 @@ PLANTS = (
     Plant("labels", box, _factor),
     Plant("labels in cells", box, _ripple),
     Plant("labels along smooth functions", box, _straight_or_bent),
+    Plant("labels along the axes", volume, _uneven_axis, True),
     Plant("labels by level of the pdf", box, _factor),
     Plant("labels, largest cell", box, _one_cell, True),
     Plant("atom", with_atoms, _other_atom),

@@ -29,6 +29,11 @@ def box() -> Subject:
     return Subject(lambda u: u.copy(), ones, Box((0.0,), (1.0,)), 1)
 
 
+def volume() -> Subject:
+    """Return uniform points of a cube, which labels judge."""
+    return Subject(lambda u: u.copy(), ones, Box((0.0,) * 3, (1.0,) * 3), 3)
+
+
 def stream() -> Subject:
     """Return uniform points of [0, 1] that draw their own uniforms."""
     return Subject(lambda rng, n: rng.random(n), ones, Interval(0, 1), None)

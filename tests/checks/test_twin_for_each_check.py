@@ -114,6 +114,14 @@ def bent(u):
     return np.interp(u, x + 0.1 * (2 * x**3 - 3 * x**2 + x), x)
 
 
+def striped(u):
+    """Along the fifth axis 64 stripes of density 1.2 and 64 of 0.8: halves of the axis, and of its halves, have their share."""
+    x = u.copy()
+    pair, y = np.divmod(64 * u[:, 4], 1)
+    x[:, 4] = (pair + np.where(y < 0.6, y / 1.2, 0.5 + (y - 0.6) / 0.8)) / 64
+    return x
+
+
 def given_up(share):
     return lambda u: Draw(u[:, 0], valid=u[:, 1] >= share)
 
@@ -174,6 +182,7 @@ SAMPLERS = {
     "cdf against the pdf in the square": (
         lambda u: u, lambda x: 1 + 0.02 * np.cos(2 * np.pi * x[:, 0]), UnitSquare(), {"cdf": lambda x: x, "dimensions": 2}),
     "labels along smooth functions": (bent, ones, Box((0.0,) * 8, (1.0,) * 8), {"dimensions": 8}),
+    "labels along the axes": (striped, ones, Box((0.0,) * 8, (1.0,) * 8), {"dimensions": 8}),
     "continuous part": (given_up(0.0), ones, LINE, {"dimensions": 2, "atoms": {0.5: 0.1}}),
 }  # fmt: skip
 ALSO = {

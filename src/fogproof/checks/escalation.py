@@ -34,6 +34,7 @@ WEIGHTS = {
     "label cells": 0.5,
     "label levels": 1.0,
     "label scores": 1.0,
+    "label strips": 1.0,
     "largest cell": 0.5,
     "serial correlation": 0.25,
     "repeated points": 0.25,

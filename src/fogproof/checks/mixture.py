@@ -15,6 +15,7 @@ from fogproof.checks.density.lattice import lattice
 from fogproof.checks.density.tree import Tree
 from fogproof.checks.statistics.integrated import Integrated
 from fogproof.checks.statistics.label_scores import Basis
+from fogproof.checks.statistics.label_strips import Strips
 from fogproof.checks.statistics.labels import Sums
 from fogproof.checks.streams import batch_generator
 from fogproof.checks.subject import Subject, in_domain, nudged
@@ -43,6 +44,7 @@ class MixtureTest:
 
     tree     in the coordinates of the domain's law
     basis    smooth functions of the same coordinates
+    strips   along the same axes
     seed     of the check
     most     batches that are mixed: the first so many
     rounded  whether the pdf changes much by rounding somewhere: such points are left out
@@ -53,6 +55,7 @@ class MixtureTest:
     law: Law
     tree: Tree
     basis: Basis
+    strips: Strips
     seed: int
     most: int
     rounded: bool
@@ -64,7 +67,7 @@ class MixtureTest:
         rng = batch_generator(seed, "labels", 0, 0)
         u = law.coordinates(points, rng.random((len(points), len(law.axes))))
         rounded = len(points) > 0 and not law.stepped and bool(moved_by_rounding(subject, points[:_CHECKED]).any())
-        mixture = MixtureTest(subject, law, Tree.of(u, _PER_LEAF), Basis.of(u), seed, most, rounded)
+        mixture = MixtureTest(subject, law, Tree.of(u, _PER_LEAF), Basis.of(u), Strips.of(u), seed, most, rounded)
         return mixture._without_thin_cells(points)
 
     def _without_thin_cells(self, points: np.ndarray) -> MixtureTest:
@@ -137,8 +140,11 @@ class MixtureTest:
     def nothing(self) -> Sums:
         """Return the sums over no points."""
         none = np.empty(0)
-        weighed = self.basis.weighed(np.empty((0, len(self.law.axes))), none, none)
+        weighed = self._weighed(np.empty((0, len(self.law.axes))), none, none)
         return Sums.of(none, none, none.astype(np.intp), len(self.tree.share), Integrated.of(none).sums, weighed)
+
+    def _weighed(self, u: np.ndarray, labels: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        return *self.basis.weighed(u, labels, w), self.strips.sums(u, labels, w)
 
     def count(self, draw: Draw, good: np.ndarray, p: np.ndarray, index: int) -> tuple[Sums, Sums]:
         """Return the sums over batch number `index`: with all samples as labels, and with those alone that were not given up.
@@ -182,7 +188,7 @@ class MixtureTest:
         integrated = Integrated.of(np.where(telling | (claimed == 0), ratio, np.nan)[len(used) :]).sums
         if not telling.all():
             labels, w, leaf, coordinates = labels[telling], w[telling], leaf[telling], coordinates[telling]
-        return Sums.of(labels, w, leaf, len(self.tree.share), integrated, self.basis.weighed(coordinates, labels, w))
+        return Sums.of(labels, w, leaf, len(self.tree.share), integrated, self._weighed(coordinates, labels, w))
 
     def _across(self, points: np.ndarray) -> np.ndarray:
         """Return (n,) which points rounding may move into another cell of the histogram."""

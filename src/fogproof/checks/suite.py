@@ -49,7 +49,7 @@ def tests_of(prepared: Prepared, tally: Tally) -> list[Test]:
     if prepared.counted and not vacuum:
         _add_cells(add, grid, tally, 2.0**-subject.bits)
     if prepared.counter.mixture is not None and not vacuum:
-        _add_labels(add, prepared.counter.mixture, tally)
+        _add_labels(add, prepared.counter.mixture, tally, not prepared.counted)
     _add_streams(add, prepared, tally, vacuum)
     n = max(tally.drawn, 1)
     wrong_atom = "wrong probability of an atom"
@@ -126,8 +126,8 @@ def _add_cells(add: Callable[..., None], grid: Grid, tally: Tally, grain: float)
             add("fine joint", joint_fine, "chi-square, fine joint", plane, tally.plane)
 
 
-def _add_labels(add: Callable[..., None], mixture: MixtureTest, tally: Tally) -> None:
-    """Add the label tests: under the one or both conventions on samples that are given up."""
+def _add_labels(add: Callable[..., None], mixture: MixtureTest, tally: Tally, alone: bool) -> None:
+    """Add the label tests, under the one or both conventions on lost samples; `alone`, if nothing else looks along the axes."""
     sums = tally.labels or (mixture.nothing(), mixture.nothing())
     conventions = sums if tally.given_up else sums[:1]
     add("labels", labels.whole, "labels", conventions)
@@ -135,6 +135,8 @@ def _add_labels(add: Callable[..., None], mixture: MixtureTest, tally: Tally) ->
     for level in range(depth, 1, -_COARSER):
         add("label cells", labels.cells_at, f"labels in {1 << level} cells", level, conventions)
     add("label scores", labels.smooth, "labels along smooth functions", conventions)
+    if alone and mixture.strips.size:
+        add("label strips", labels.along_axes, "labels along the axes", mixture.strips, mixture.law.axes, conventions)
     add("label levels", labels.levels, "labels by level of the pdf", conventions)
     add("largest cell", labels.largest, "labels, largest cell", mixture.describe, conventions)
 

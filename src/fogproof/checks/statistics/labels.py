@@ -17,15 +17,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fogproof.checks.statistics.cells import MISS, unevenness
-from fogproof.checks.statistics.chi_square import pooled
 from fogproof.checks.statistics.integrated import Integrated
 from fogproof.checks.statistics.label_scores import scores
-from fogproof.checks.statistics.tails import chi_square_detected, gamma_above, normal_quantile
+from fogproof.checks.statistics.label_strips import Strips, strips
+from fogproof.checks.statistics.residuals import LEAST, chi_square, detected, sums_in
+from fogproof.checks.statistics.tails import normal_quantile
 from fogproof.checks.verdict import Finding, Outcome, Resolution
 
 _EDGES = np.array([-4.0, -2.0, *np.arange(-1.0, 1.01, 0.25), 2.0, 4.0])  # of the levels, in log(w / (1 - w))
 LEVELS = len(_EDGES) + 1
-_LEAST = 10.0  # variance of the sum of a cell whose square may enter a chi-square
 _NORMAL = 50.0  # variance from which on a sum's tail is the normal one, corrected for skewness
 _SKEW = 0.5  # largest exponent of that correction
 _THIRD = 0.3  # of the samples of a cell: a level at which more would have to be missing is too fine to speak of
@@ -42,6 +42,7 @@ class Sums:
     integral  (5,) of p, by the points of the known law alone, see `Integrated`
     score   (q,) of residuals weighed with smooth functions of the point
     spread  (q, q) their covariance
+    strips  (4, r, 256) one row an axis or pair of axes, see `Strips`
     """
 
     cells: np.ndarray
@@ -49,6 +50,7 @@ class Sums:
     integral: np.ndarray
     score: np.ndarray
     spread: np.ndarray
+    strips: np.ndarray
 
     @staticmethod
     def of(
@@ -57,19 +59,17 @@ class Sums:
         cell: np.ndarray,
         cells: int,
         integral: np.ndarray,
-        weighed: tuple[np.ndarray, np.ndarray],
+        weighed: tuple[np.ndarray, np.ndarray, np.ndarray],
     ) -> Sums:
         """Return the sums over points with labels (n,) of 0 or 1, probabilities w (n,), in the given cells (n,).
 
-        weighed  score and spread
+        weighed  score, spread and strips
         """
-        variance = w * (1 - w)
-        columns = (labels - w, variance, variance * (1 - 2 * w), variance * variance)
         with np.errstate(divide="ignore"):
             level = np.searchsorted(_EDGES, np.log(w) - np.log1p(-w))
         return Sums(
-            np.stack([np.bincount(cell, column, cells) for column in columns]),
-            np.stack([np.bincount(level, column, LEVELS) for column in columns]),
+            sums_in(cell, cells, labels, w),
+            sums_in(level, LEVELS, labels, w),
             integral,
             *weighed,
         )
@@ -77,7 +77,7 @@ class Sums:
     @property
     def columns(self) -> tuple[np.ndarray, ...]:
         """All sums."""
-        return self.cells, self.levels, self.integral, self.score, self.spread
+        return self.cells, self.levels, self.integral, self.score, self.spread, self.strips
 
     def merged(self, other: Sums) -> Sums:
         """Return the sums over both."""
@@ -155,6 +155,11 @@ def smooth(name: str, sums: tuple[Sums, ...], alpha: float) -> Finding:
     return _convention([scores(name, each.score, each.spread, float(each.cells[1].sum()), alpha) for each in sums])
 
 
+def along_axes(name: str, where: Strips, axes: tuple[str, ...], sums: tuple[Sums, ...], alpha: float) -> Finding:
+    """Chi-squares of the residuals in strips of each axis and in squares of two."""
+    return _convention([strips(name, where, axes, each.strips, alpha) for each in sums])
+
+
 def _convention(findings: list[Finding]) -> Finding:
     """Return the finding under the convention that fits best: the claim is right if one of them is."""
     best = max(findings, key=lambda f: 1.0 if f.p_value is None else f.p_value)
@@ -167,29 +172,16 @@ def _folded(cells: np.ndarray, depth: int) -> np.ndarray:
 
 
 def _chi_square(name: str, columns: np.ndarray, alpha: float) -> Finding:
-    """Return the test of sums (4, m), small ones pooled.
-
-    The square of a sum over its variance has mean 1 exactly; its second and third cumulants follow from those of the sum, and the
-    p-value is that of the gamma law with the three (Pearson's type III).
-    """
-    groups = pooled(columns[1], _LEAST)
-    if columns[1].sum() < 2 * _LEAST:
+    """Return the test of sums (4, m), small ones pooled."""
+    if columns[1].sum() < 2 * LEAST:
         return Finding(name, "inconclusive", "too few coins are in doubt", alpha=alpha)
-    total, variance, third, squares = (np.bincount(groups, column) for column in columns)
-    cells = len(total)
-    statistic = float(np.sum(total**2 / variance))
-    fourth = (variance - 6 * squares) / variance**2
-    skewness = third**2 / variance**3
-    second_cumulant = float(np.sum(2 + fourth))
-    third_cumulant = float(np.sum(8 + 12 * fourth + 10 * skewness))
-    shape, scale = 4 * second_cumulant**3 / third_cumulant**2, third_cumulant / (2 * second_cumulant)
-    p = gamma_above(shape, (statistic - cells) / scale + shape)
+    p, statistic, cells = chi_square(columns)
+    doubt = float(columns[1].sum())
     rejected = p <= alpha
-    misfit = math.sqrt(max(statistic - cells, 0.0) / float(variance.sum()))
+    misfit = math.sqrt(max(statistic - cells, 0.0) / doubt)
     message = f"chi-square = {statistic:.5g} on {cells} degrees of freedom"
     outcome: Outcome = "rejected" if rejected else "not rejected"
-    seen = math.sqrt(chi_square_detected(cells, alpha, MISS) / float(variance.sum()))
-    resolution = Resolution(unevenness(cells), seen * (1 + 0.5 * seen), MISS)
+    resolution = Resolution(unevenness(cells), detected(cells, alpha, doubt), MISS)
     cause = "shape" if rejected else ""
     return Finding(name, outcome, message, p, alpha, True, statistic, misfit, resolution=resolution, cause=cause)
 
