@@ -23,7 +23,7 @@ from fogproof.reports.charts.findings import parse_figure
 from fogproof.reports.files import write_file
 from fogproof.reports.validation import adapter
 from fogproof.text import spreadsheet_cell, unfinished
-from fogproof.verify import TwinResult
+from fogproof.verify import TwinResult, status_of
 
 SCHEMA = "fogproof/results/1"
 RESULTS = "results.json"
@@ -107,6 +107,11 @@ def parse_record(record: Any, origin: str = "record") -> RunRecord:
         if case.verdict is not None and stated not in (None, case.verdict.outcome):
             place = f"cases.{number}.verdict.outcome"
             said = f"must be {case.verdict.outcome!r}, as its findings are, got {shorten(stated)}"
+            raise InvalidInputError(f"{origin}: {place} {said}", place)
+        due = case.status if case.verdict is None else status_of(case.verdict.outcome, case.expected)
+        if case.status != due:
+            place = f"cases.{number}.status"
+            said = f"must be {due!r}, as its verdict is, got {shorten(case.status)}"
             raise InvalidInputError(f"{origin}: {place} {said}", place)
         for index, finding in enumerate(case.verdict.findings if case.verdict is not None else ()):
             if finding.figure is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from typing import Any
 
 _CONTROL_PICTURES = {code: 0x2400 + code for code in range(0x20) if chr(code) not in "\t\n"} | {0x7F: 0x2421}
@@ -19,6 +20,15 @@ def visible(text: str) -> str:
 def one_line(text: str) -> str:
     """Return `text` on one line, safe as `visible` makes it."""
     return " ".join(visible(text).split())
+
+
+def beginning(text: str, most: int = 200) -> str:
+    """Return the first line of `text`, or as many whole words of it as have room.
+
+    >>> beginning("could only read 3"), beginning("could only read 3", 15)
+    ('could only read 3', 'could only ...')
+    """
+    return textwrap.shorten(visible(text).partition("\n")[0], most, placeholder=" ...")
 
 
 def unfinished(done: int, asked: int, stopped: bool = False) -> str:

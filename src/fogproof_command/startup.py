@@ -39,8 +39,10 @@ def stand_in(error: BaseException) -> str:
         for filename in (*_passed(one), _asked(one)):
             name = shadowed(filename)
             if name:
-                where = f"{filename} stands in the place of the module {name}"
-                return f"{where}; rename it, or take its folder out of PYTHONPATH"
+                told = filter(None, os.environ.get("PYTHONPATH", "").split(os.pathsep))
+                listed = any(os.path.abspath(filename).startswith(os.path.abspath(path) + os.sep) for path in told)
+                fix = "rename it, or take its folder out of PYTHONPATH" if listed else "rename it"
+                return f"{filename} stands in the place of the module {name}; {fix}"
     return ""
 
 

@@ -42,7 +42,7 @@ def test_verify_writes_a_report_and_exits_0(tmp_path):
     assert both.returncode == 0, both.stderr
     assert both.stdout.strip() == str(tmp_path / "report" / "comparison.html")
     assert "Every case came out as before" in (tmp_path / "report" / "comparison.html").read_text()
-    record["cases"][0]["status"] = "rejected"
+    record["cases"][0] |= {"status": "error", "verdict": None}
     (tmp_path / "report" / "results.json").write_text(json.dumps(record))
     (tmp_path / "old").mkdir()
     (tmp_path / "old" / "results.json").write_text(json.dumps({**record, "cases": record["cases"][1:]}))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -160,3 +161,15 @@ def test_an_output_that_is_no_folder_is_said_to_be_none(filled: Callable[[list[s
     words = filled(WRITES[command])
     assert b"'taken' is a file" in here(Run([command, *words])).err
     assert b"link is a link that leads nowhere" in here(Run([command, *words[:-1], "link"])).err
+
+
+@pytest.mark.parametrize("command", ["verify", "compare", "stability", "gallery"])
+def test_a_folder_into_which_another_run_writes(filled: Callable[[list[str]], list[str]], command: str) -> None:
+    fcntl = pytest.importorskip("fcntl")
+    Path("busy").mkdir()
+    other = os.open("busy", os.O_RDONLY)
+    fcntl.flock(other, fcntl.LOCK_EX)
+    end = here(Run([command, *filled(WRITES[command])[:-1], "busy"]))
+    os.close(other)
+    assert (end.code, b"another run of fogproof writes into busy" in end.err) == (2, True), end.err
+    assert not [*Path("busy").iterdir()]

@@ -68,3 +68,20 @@ def test_a_date_that_libraries_cannot_read_is_named(monkeypatch, told):
     assert (end.code, b"SOURCE_DATE_EPOCH must be a whole number of seconds" in end.err) == (BAD_INPUT, True)
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
     assert here(Run(["list", "fog/*"])).code == 0
+
+
+@POSIX
+def test_a_folder_that_is_gone_is_named(tmp_path):
+    (tmp_path / "gone").mkdir()
+    code = "import os, sys; os.chdir('gone'); os.rmdir(os.getcwd()); sys.path.pop(0); "
+    start = code + "sys.argv[1:] = ['verify', 'equiangular/beside']; from fogproof_command import main; main()"
+    done = subprocess.run([sys.executable, "-c", start], capture_output=True, cwd=tmp_path, check=False)
+    assert (done.returncode, b"the folder one stands in is gone; go to another" in done.stderr) == (2, True)
+
+
+def test_a_file_of_cases_that_is_none_is_told_why(tmp_path):
+    (tmp_path / "folder.py").mkdir()
+    (tmp_path / "wide.py").write_bytes("x = 1\n".encode("utf-16"))
+    for name, why in (("folder", b"is a folder"), ("wide", b"is not UTF-8 text; save it as UTF-8")):
+        end = here(Run(["verify", str(tmp_path / f"{name}.py")]))
+        assert (end.code, why in end.err) == (BAD_INPUT, True), end.err

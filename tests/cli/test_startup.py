@@ -75,10 +75,14 @@ def test_a_file_in_the_place_of_a_module_is_known(tmp_path):
     assert shadowed(os.__file__) == shadowed(pytest.__file__) == ""
 
 
-def test_a_module_that_lacks_what_it_is_asked_for_is_known(tmp_path):
+def test_a_module_that_lacks_what_it_is_asked_for_is_known(tmp_path, monkeypatch):
+    monkeypatch.delenv("PYTHONPATH", raising=False)
     module = types.ModuleType("numpy")
     module.__file__ = str(tmp_path / "numpy.py")
-    said = f"{module.__file__} stands in the place of the module numpy; rename it, or take its folder out of PYTHONPATH"
+    said = f"{module.__file__} stands in the place of the module numpy; rename it"
+    assert end_of(AttributeError("x", obj=module, name="x")) == (said, BAD_INPUT)
+    monkeypatch.setenv("PYTHONPATH", f"/nowhere{os.pathsep}{tmp_path}")
+    said += ", or take its folder out of PYTHONPATH"
     assert end_of(AttributeError("x", obj=module, name="x")) == (said, BAD_INPUT)
     assert end_of(AttributeError("x", obj=np, name="x"))[1] == FAULT
 

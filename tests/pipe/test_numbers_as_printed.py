@@ -185,6 +185,24 @@ def test_files_that_cannot_be_read_say_why(tmp_path, text, words):
         check_file(tmp_path / "x.csv", PATHS)
 
 
+def test_beside_decimal_points_a_comma_is_none(tmp_path):
+    """A row with a number too many is no habit of printing."""
+    (tmp_path / "x.csv").write_text("x\n0.5\n1,2\n")
+    with pytest.raises(FogproofError, match=r"row 2 is '1,2', not 1 numbers$"):
+        check_file(tmp_path / "x.csv", PATHS)
+    with pytest.raises(ValueError, match=r"row 2 is '1,2', not a number$"):
+        from_lines([b"0.5", b"1,2"], 1)
+    with pytest.raises(ValueError, match="decimal mark"):
+        from_lines([b"0,5", b"1,2"], 1)
+
+
+def test_what_numpy_says_of_a_file_is_not_cut_in_a_word(tmp_path):
+    np.save(tmp_path / "x.npy", values())
+    (tmp_path / "x.npy").write_bytes((tmp_path / "x.npy").read_bytes()[:999])
+    with pytest.raises(FogproofError, match=r"only read \d+ elements"):
+        check_file(tmp_path / "x.npy", PATHS)
+
+
 def test_the_same_seed_gives_the_same_samples(tmp_path):
     own = {key: PATHS[key] for key in PATHS}
     source = SAMPLER.replace("array, io", "array, io, random").replace("for u in rows", "for u in map(draw, range(n))")

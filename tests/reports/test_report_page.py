@@ -160,7 +160,8 @@ def test_headline(statuses, words, tmp_path):
     ],
 )
 def test_finding_is_told_whole(finding, words, tmp_path):
-    one = case("a") | {"verdict": Verdict((finding,), 1e-6, 10, 1).to_dict()}
+    status = "passed" if finding.outcome == "not rejected" else "rejected"
+    one = case("a") | {"status": status, "verdict": Verdict((finding,), 1e-6, 10, 1).to_dict()}
     assert words in Page(write_report(record([one]), tmp_path)).words.replace("\n", " ").replace("\xa0", " ")
 
 

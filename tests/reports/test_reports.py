@@ -19,6 +19,7 @@ from fogproof.reports.pages.junit import write_junit
 from fogproof.reports.records.runs import parse_record, write_csv, write_record
 from fogproof.reports.text import anchor, file_stem
 from fogproof.text import visible
+from fogproof.verify import status_of
 
 
 def test_round_trip_keeps_every_value(tmp_path):
@@ -226,3 +227,26 @@ def test_anchors_are_apart_and_plain_names_are_kept():
     anchors = [anchor(name) for name in HOSTILE.values()]
     assert len(set(anchors)) == len(anchors)
     assert all(len(it) <= 90 and not any(c.isspace() for c in it) for it in anchors)
+
+
+@pytest.mark.parametrize(
+    ("outcome", "expected", "status"),
+    [
+        ("not rejected", "not rejected", "passed"),
+        ("not rejected", "rejected", "surprise"),
+        ("rejected", "not rejected", "rejected"),
+        ("rejected", "rejected", "known"),
+        ("inconclusive", "not rejected", "inconclusive"),
+        ("inconclusive", "rejected", "surprise"),
+    ],
+)
+def test_a_status_follows_from_the_verdict(outcome, expected, status):
+    assert status_of(outcome, expected) == status
+
+
+def test_a_status_beside_another_verdict_is_refused():
+    table = typical(1)
+    number = next(k for k, case in enumerate(table["cases"]) if case["status"] == "rejected")
+    table["cases"][number]["status"] = "passed"
+    with pytest.raises(InvalidInputError, match=rf"cases\.{number}\.status must be 'rejected', as its verdict is"):
+        parse_record(table)

@@ -33,6 +33,8 @@ from fogproof.input_files import TEXT
 GROUP = "fogproof.cases"
 """The entry-point group."""
 
+_HEAD = 64
+
 
 def is_file(pattern: str) -> bool:
     """Return whether a user's word names a file of cases: `path.py`, or `path.py::name` for some of them."""
@@ -73,10 +75,15 @@ def own_cases(origin: str) -> tuple[Case, ...]:
 
 def _function_of_file(origin: str) -> Callable[[], Any]:
     path = Path(origin).resolve()
+    if path.is_dir():
+        raise InvalidInputError(f"{origin} is a folder; a file of cases is asked for", origin)
     if not path.is_file():
         raise InvalidInputError(f"there is no file {origin}", origin)
     if path.stat().st_size > TEXT:
         raise InvalidInputError(f"{origin} has {path.stat().st_size} bytes; a file of cases has at most {TEXT}", origin)
+    with path.open("rb") as file:
+        if b"\0" in file.read(_HEAD):  # what begins so, Python tells of in words of its own
+            raise InvalidInputError(f"{origin} is not UTF-8 text; save it as UTF-8", origin)
     import_from(str(path.parent))  # as if the file were run: it may import what lies beside it
     name = f"_cases_{hashlib.blake2b(os.fsencode(path), digest_size=8).hexdigest()}"
     spec = importlib.util.spec_from_file_location(name, path)

@@ -10,7 +10,7 @@ from typing import Any
 
 import click
 
-from fogproof.cli.force import FORCE
+from fogproof.cli.force import FORCE, take
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
 from fogproof.cli.values import FOLDER, SECONDS_OR_NONE
@@ -51,9 +51,7 @@ def command(names: tuple[str, ...], folder: Path | None, seconds: float, force: 
     chosen = select(names)
     earlier: list[dict[str, Any]] = []
     if folder is not None:
-        from fogproof.reports import prepare_folder
-
-        prepare_folder(folder, ("bench.json", "bench.md"), force)
+        take(folder, ("bench.json", "bench.md"), force)
         earlier = history(folder)
     started, clock = datetime.datetime.now(datetime.UTC), time.perf_counter()
     rows: list[WayTime] = []

@@ -144,7 +144,17 @@ def _require_epoch(told: str | None) -> None:
 def _of_the_system(error: OSError) -> str:
     if error.errno in (errno.EMFILE, errno.ENFILE):
         return "too many files are open; raise the system's limit (ulimit -n)"
+    if error.errno == errno.ENOENT and error.filename is None and _is_nowhere():
+        return "the folder one stands in is gone; go to another one (cd), and give the command again"
     return f"{error.strerror or error}{f': {error.filename}' if error.filename else ''}"
+
+
+def _is_nowhere() -> bool:
+    try:
+        os.getcwd()
+    except FileNotFoundError:
+        return True
+    return False
 
 
 def _fault(error: BaseException) -> int:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from fogproof.cli.force import FORCE
+from fogproof.cli.force import FORCE, take
 from fogproof.cli.terminal import say
 from fogproof.cli.values import FOLDER, PROBABILITY, RELATIVE
 from fogproof.images.compare import compare_image
@@ -67,9 +67,7 @@ def command(
     """
     scene_file = images[-1] if images[-1].lower().endswith(SCENES) else None
     if folder is not None:
-        from fogproof.reports import prepare_folder
-
-        prepare_folder(folder, ("index.html", "results.json", "maps.exr", "maps.npy"), force)
+        take(folder, ("index.html", "results.json", "maps.exr", "maps.npy"), force)
     if scene_file is None:
         if not others:
             raise click.UsageError("give a SCENE.toml after the images, or --with IMAGE to compare with")

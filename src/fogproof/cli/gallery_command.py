@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from fogproof.cli.force import FORCE
+from fogproof.cli.force import FORCE, take
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
 from fogproof.cli.values import FOLDER
@@ -33,9 +33,9 @@ def command(pictures: tuple[str, ...], folder: Path, seed: int, force: bool) -> 
     \b
     Example:  fogproof gallery -o build/gallery
     """
-    from fogproof.reports import prepare_folder, write_gallery
+    from fogproof.reports import write_gallery
 
-    prepare_folder(folder, ("gallery.html", "gallery.json"), force)
+    take(folder, ("gallery.html", "gallery.json"), force)
     with interruptible() as stop:
         write_gallery(folder, seed, pictures)
     if (folder / "gallery.html").exists():

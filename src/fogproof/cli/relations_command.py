@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from fogproof.cli.force import FORCE
+from fogproof.cli.force import FORCE, take
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
 from fogproof.cli.values import FOLDER, PLACE, PROBABILITY, RELATIVE, SECONDS
@@ -76,7 +76,6 @@ def command(
     \b
     Example:  fogproof relations scenes/images/sun.toml --with mitsuba -o build/relations
     """
-    from fogproof.reports import prepare_folder
     from fogproof.scene.files import read_image_scenes
 
     chosen = renderer_of(renderer)
@@ -87,7 +86,7 @@ def command(
         chosen, ways, samples, renders, seed, tolerance, alpha, python, only, not no_oracle, seconds
     )  # fmt: skip
     read_image_scenes(scenes)  # what cannot be read is told before hours of rendering
-    prepare_folder(folder, ("index.html", "results.json"), force)
+    take(folder, ("index.html", "results.json"), force)
     rows: list[dict[str, Any]] = []
     asked = count_relations(scenes, run, folder)
     with interruptible() as stop:

@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from fogproof.cli.force import FORCE
+from fogproof.cli.force import FORCE, take
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
 from fogproof.cli.values import FOLDER, PLACE, PROBABILITY, RELATIVE, SECONDS
@@ -63,12 +63,11 @@ def command(
     \b
     Example:  fogproof render scenes/images/*.toml --with mitsuba -o build/mitsuba
     """
-    from fogproof.reports import prepare_folder
     from fogproof.scene.files import read_image_scenes
 
     wanted = Wanted(renderer_of(renderer), samples, seed, tolerance, alpha, python, seconds)
     read_image_scenes(scenes)  # what cannot be read is told before hours of rendering
-    prepare_folder(folder, ("index.html", "results.json"), force)
+    take(folder, ("index.html", "results.json"), force)
     rows: list[dict[str, Any]] = []
     width = max(len(path.stem) for path in scenes)
     with interruptible() as stop:

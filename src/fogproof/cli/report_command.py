@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from fogproof.cli.force import FORCE
+from fogproof.cli.force import FORCE, take
 from fogproof.cli.terminal import say
 from fogproof.cli.values import PLACE
 from fogproof.errors import FogproofError, InvalidInputError
@@ -36,7 +36,6 @@ def command(folder: Path, older: Path | None, force: bool) -> int:
         COMPARISON,
         REPORT,
         compare_exit_code,
-        prepare_folder,
         read_record,
         write_comparison,
         write_report,
@@ -50,7 +49,7 @@ def command(folder: Path, older: Path | None, force: bool) -> int:
 
             record["history"] = compare(before, record)
         code = 0 if before is None else compare_exit_code(before, record)
-        prepare_folder(folder, REPORT if before is None else (*REPORT, *COMPARISON), force)
+        take(folder, REPORT if before is None else (*REPORT, *COMPARISON), force)
         page = write_report(record, folder, keep=True)
         if before is not None:
             page = write_comparison(before, record, folder)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import click
 
-from fogproof.cli.force import FORCE
+from fogproof.cli.force import FORCE, take
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
 from fogproof.cli.values import FOLDER
@@ -49,9 +49,7 @@ def command(names: tuple[str, ...], folder: Path | None, brief: bool, force: boo
     chosen = short(select(names)) if brief else select(names)
     flint()  # says how to install it before anything else is done
     if folder is not None:
-        from fogproof.reports import prepare_folder
-
-        prepare_folder(folder, ("stability.html", "stability.json", "stability.csv"), force)
+        take(folder, ("stability.html", "stability.json", "stability.csv"), force)
     started, clock = datetime.datetime.now(datetime.UTC), time.perf_counter()
     points = POINTS_SHORT if brief else POINTS
     measured: list[FormError] = []

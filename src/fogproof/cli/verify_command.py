@@ -12,7 +12,7 @@ from pathlib import Path
 import click
 
 from fogproof.checks import fresh_seed
-from fogproof.cli.force import FORCE
+from fogproof.cli.force import FORCE, take
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
 from fogproof.cli.values import FOLDER, PROBABILITY, SECONDS
@@ -69,9 +69,9 @@ def command(
     """
     chosen = select(cases)
     if folder is not None:
-        from fogproof.reports import prepare_folder
+        from fogproof.reports import REPORT
 
-        prepare_folder(folder, force=force)
+        take(folder, REPORT, force)
     seed = fresh_seed() if seed is None else seed
     started, clock = datetime.datetime.now(datetime.UTC), time.perf_counter()
     results: list[Result] = []

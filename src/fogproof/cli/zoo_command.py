@@ -10,7 +10,7 @@ from pathlib import Path
 import click
 
 from fogproof.checks import fresh_seed
-from fogproof.cli.force import FORCE
+from fogproof.cli.force import FORCE, take
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
 from fogproof.cli.values import FOLDER, PROBABILITY
@@ -75,9 +75,7 @@ def command(
     chosen = select(bugs, one_in)
     log, rows = None, []
     if folder is not None:
-        from fogproof.reports import prepare_folder
-
-        prepare_folder(folder, ("zoo.md",), force)
+        take(folder, ("zoo.md",), force)
         settings = {"samples": samples, "alpha": alpha, "others": others}
         log = ZooLog(folder / "zoo.jsonl", settings)
         names = {bug.name for bug in chosen}

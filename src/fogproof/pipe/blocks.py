@@ -41,8 +41,9 @@ def from_lines(lines: list[bytes], columns: int) -> np.ndarray:
             rows[place] = numbers_of(line.split(b","), columns)
         except ValueError:
             shown = line[:80].decode("utf-8", "replace")
+            fix = habit(line, columns, points=b"." in whole)
             due = f"{columns} numbers between commas" if columns > 1 else "a number"
-            raise ValueError(f"row {place + 1} is {shown!r}, not {due}{habit(line, columns)}") from None
+            raise ValueError(f"row {place + 1} is {shown!r}, not {due}{fix}") from None
     return rows
 
 

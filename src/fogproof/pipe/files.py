@@ -12,6 +12,7 @@ from fogproof.errors import InvalidInputError, UnsupportedError, shorten
 from fogproof.input_files import open_regular, size_of
 from fogproof.pipe.blocks import DTYPES
 from fogproof.pipe.number_lines import habit, numbers_of
+from fogproof.text import beginning
 
 _MOST = 2**30  # bytes that are read
 _LONGEST_HEADER = 10_000  # of a .npy file
@@ -56,7 +57,7 @@ def _npy(path: Path) -> tuple[np.ndarray, tuple[str, ...]]:
             if left := size_of(file) - file.tell():
                 raise ValueError(f"{left} bytes follow the array that its header tells of; write one array a file")
         except Exception as error:  # NumPy evaluates the header as a Python literal: anything may come of it
-            said = str(error).partition("\n")[0][:80] or "its header is broken"
+            said = beginning(str(error)) or "its header is broken"
             raise InvalidInputError(f"{path} is no .npy array: {said}", str(path)) from None
     names: tuple[str, ...] = ()
     if array.dtype.names and all(array.dtype[name].kind in "iuf" for name in array.dtype.names) and array.ndim == 1:
@@ -101,7 +102,8 @@ def _csv(path: Path) -> tuple[np.ndarray, tuple[str, ...]]:
             rows[place] = numbers_of(_cells(line, separator), len(first))
         except ValueError:
             shown = f"row {place + 1} is {line[:60].decode('utf-8', 'replace')!r}"
-            rule = f"not {len(first)} numbers{habit(line, len(first), separator)}"
+            points = any(b"." in other for other in body)
+            rule = f"not {len(first)} numbers{habit(line, len(first), separator, points)}"
             raise InvalidInputError(f"{path}: {shown}, {rule}", str(path)) from None
     return rows, names
 

@@ -26,10 +26,14 @@ def numbers_of(cells: list[bytes], count: int) -> list[float]:
     return row
 
 
-def habit(line: bytes, count: int, separator: bytes | None = b",") -> str:
-    """Return in words what another way of printing numbers is to be changed into, "" if the line shows none."""
+def habit(line: bytes, count: int, separator: bytes | None = b",", points: bool = False) -> str:
+    """Return in words what another way of printing numbers is to be changed into, "" if the line shows none.
+
+    points  whether there are decimal points around: then a comma is none, and a row such as 1,2 has a number too many
+    """
     whole = line.split(separator)
     halves = len(whole) == 2 * count and all(cell.strip().lstrip(b"-+").isdigit() for cell in whole[::2])
-    if (halves and separator == b",") or any(re.fullmatch(_DECIMAL_COMMA, cell) for cell in whole):
+    commas = (halves and separator == b",") or any(re.fullmatch(_DECIMAL_COMMA, cell) for cell in whole)
+    if commas and not points:
         return "; the decimal mark is a point: set the locale to C"
     return next((f"; {fix}" for pattern, fix in _HABITS if re.search(pattern, line)), "")

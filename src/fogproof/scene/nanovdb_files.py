@@ -27,6 +27,7 @@ import numpy as np
 
 from fogproof.errors import InvalidInputError, UnsupportedError, shorten
 from fogproof.input_files import open_regular, size_of
+from fogproof.text import beginning
 
 MAGIC = (b"NanoVDB0", b"NanoVDB2")
 MAJOR = 32
@@ -71,7 +72,7 @@ def read_nanovdb(path: Path, name: str | None = None) -> DenseGrid:
     try:
         return _dense(_Bytes(data), path, name)
     except (struct.error, IndexError, ValueError, zlib.error, OverflowError) as error:
-        said = str(error).partition("\n")[0][:80]
+        said = beginning(str(error))
         raise InvalidInputError(f"{path} is a broken or truncated NanoVDB file: {said}", str(path)) from None
 
 

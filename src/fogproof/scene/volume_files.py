@@ -35,6 +35,7 @@ from fogproof.input_files import open_regular, size_of
 from fogproof.scene.media.transformed import TransformedMedium
 from fogproof.scene.media.voxel_grid import VoxelGrid
 from fogproof.scene.nanovdb_files import DenseGrid, read_nanovdb
+from fogproof.text import beginning
 from fogproof.validate import number
 
 VALUES = 2**27
@@ -151,7 +152,7 @@ def _read_npy(path: Path) -> tuple[np.ndarray, tuple[None, None]]:
             _require_short_header(file, 2 if version == (1, 0) else 4)
             shape, by_columns, kind = header(file)
         except Exception as error:  # NumPy evaluates the header as a Python literal: anything may come of it
-            said = str(error).partition("\n")[0][:80] or "its header is broken"
+            said = beginning(str(error)) or "its header is broken"
             raise InvalidInputError(f"{path} is no .npy array: {said}", str(path)) from None
         if kind.kind not in "iuf" or kind.itemsize > 8:
             raise InvalidInputError(f"{path} must hold an array of numbers, got dtype {shorten(str(kind))}", str(path))

@@ -46,6 +46,13 @@ class Result:
         return self.status in ("passed", "known", "skipped") and not blind
 
 
+def status_of(outcome: str, expected: str) -> Status:
+    """Return what a verdict's outcome means for a case that is expected to be "not rejected" or "rejected"."""
+    if expected == "rejected":
+        return "known" if outcome == "rejected" else "surprise"
+    return "passed" if outcome == "not rejected" else "rejected" if outcome == "rejected" else "inconclusive"
+
+
 def exit_code(results: Iterable[Result]) -> int:
     """Return 0 if every outcome is as expected, 1 if something was rejected or failed, 3 if something was only inconclusive.
 

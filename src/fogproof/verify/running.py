@@ -17,7 +17,7 @@ from fogproof.catalogue import Case
 from fogproof.checks.limits import end_isolated, isolated
 from fogproof.checks.streams import batch_generator
 from fogproof.errors import FogproofError, NotInstalledError
-from fogproof.verify.results import Result, Status, TwinResult
+from fogproof.verify.results import Result, TwinResult, status_of
 from fogproof.verify.selection import shares, whole
 
 _PACKAGES = {"mitsuba": ("Mitsuba 3", "mitsuba"), "miepython": ("miepython", "mie")}
@@ -125,14 +125,7 @@ def _run_subject(case: Case, seed: int, alpha: float) -> Result:
         return Result(case, "error", None, str(error), time.perf_counter() - started)
     except Exception as error:  # a defect of a case must not cost the other cases' results
         return Result(case, "error", None, f"{type(error).__name__}: {error}", time.perf_counter() - started)
-    status: Status
-    if verdict.outcome == case.expected:
-        status = "passed" if case.expected == "not rejected" else "known"
-    elif case.expected != "not rejected":
-        status = "surprise"
-    else:
-        status = "rejected" if verdict.outcome == "rejected" else "inconclusive"
-    return Result(case, status, verdict, case.reason, time.perf_counter() - started)
+    return Result(case, status_of(verdict.outcome, case.expected), verdict, case.reason, time.perf_counter() - started)
 
 
 def case_seed(seed: int, name: str) -> int:
