@@ -79,7 +79,7 @@ def write_comparison(before: dict[str, Any], after: dict[str, Any], folder: str 
     older, newer = _run(before, "before"), _run(after, "after")
     write_record(before, folder, "before.json")
     write_record(after, folder, "after.json")
-    return write_comparison_page(older, newer, Path(folder), _history(after))
+    return write_comparison_page(older, newer, Path(folder), _history(before, after))
 
 
 def compare_exit_code(before: dict[str, Any], after: dict[str, Any]) -> int:
@@ -91,7 +91,7 @@ def compare_exit_code(before: dict[str, Any], after: dict[str, Any]) -> int:
     if older.kind != newer.kind:
         what = f"a record of kind {older.kind!r} cannot be compared with one of kind {newer.kind!r}"
         raise InvalidInputError(f"{what}; compare two runs of the same command", "kind")
-    return exit_code(older, newer, _history(after))
+    return exit_code(older, newer, _history(before, after))
 
 
 def _run(record: Any, origin: str) -> RunRecord:
@@ -99,8 +99,10 @@ def _run(record: Any, origin: str) -> RunRecord:
     return as_run(parse_study(record, origin)) if _is_study(record) else parse_record(record, origin)
 
 
-def _history(after: dict[str, Any]) -> History | None:
-    return parse_study(after).history if _is_study(after) else None
+def _history(before: dict[str, Any], after: dict[str, Any]) -> History | None:
+    """Return what the newer study says of the older one, if it is this one that it was held against."""
+    history = parse_study(after).history if _is_study(after) else None
+    return history if history is not None and history.before.get("started") == before.get("started") else None
 
 
 def _is_study(record: Any) -> bool:

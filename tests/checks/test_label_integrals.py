@@ -5,6 +5,7 @@ import pytest
 from label_integrals import deviation, lobes, visible_normals
 
 from fogproof import UnitHemisphere, check_sampler
+from fogproof.checks.sampled_integrals import reach
 from fogproof.checks.statistics.integrated import Integrated
 
 SEEDS = range(6)
@@ -40,3 +41,19 @@ def test_sums_of_parts_are_the_sums_of_the_whole():
     parts = Integrated(Integrated.of(ratio[:2000]).sums + Integrated.of(ratio[2000:]).sums)
     assert parts.mean == pytest.approx(Integrated.of(ratio).mean)
     assert parts.error == pytest.approx(Integrated.of(ratio).error)
+
+
+@pytest.mark.parametrize("expected", [1, 4, 9, 20])
+def test_few_high_points_do_not_deny_an_integral(expected):
+    """Of 10 000 points `expected` ones, on average, are 300 times as high as the others: 0 to 3 of them may be seen."""
+    rng = np.random.default_rng()
+    base, high, n = 1.0, 300.0, 10_000
+    for seen in rng.poisson(expected, 2000):
+        if seen:  # what nobody has seen nobody can allow for
+            found = Integrated.of(np.concatenate([np.full(seen, high), np.full(n - seen, base)]))
+            truth = base + (high - base) * expected / n
+            assert abs(found.mean - truth) <= reach(found), f"{seen} seen"
+    lone = Integrated.of(np.concatenate([[high], np.full(n - 1, base)]))
+    assert abs(lone.mean - (base + (high - base) * 9 / n)) > 8 * lone.error, "one of nine expected, by the normal law"
+    assert lone.dominated
+    assert high / n <= lone.largest < 1.1 * high / n

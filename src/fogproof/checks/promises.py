@@ -116,7 +116,8 @@ class Watch:
         ):  # the very edge of the support may be missed by rounding
             beside = (*nudged(points[zero], subject.roundoff), _within(subject, points[zero]))
             near = [subject.density(y) for y in beside]
-            zero[zero] = ~np.any([np.isfinite(q) & (q > 0) for q in near], axis=0)
+            begins = np.any([np.isfinite(q) & (q > 0) for q in near], axis=0)
+            zero[zero] = np.isnan(p[zero]) | ~begins  # no rounding makes a density of what is no number
         if pole.any():
             self._note("infinite pdf", pole, lambda i: f"pdf is inf at the sampled x = {shorten(points[i])}", len(at))
         self._note("positive pdf", zero, lambda i: f"pdf is {p[i]:g} at the sampled x = {shorten(points[i])}", len(at))

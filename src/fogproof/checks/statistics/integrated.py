@@ -44,14 +44,26 @@ class Integrated:
         return math.sqrt(max(float(self.sums[2]) / self.n - self.mean**2, 0.0) / self.n)
 
     @property
-    def why_not(self) -> str:
-        """Why mean and standard error are no interval, "" if they are one."""
+    def largest(self) -> float:
+        """What the largest ratio adds to the mean, or a little more."""
+        return float(self.sums[3]) ** 0.25 / self.n
+
+    @property
+    def dominated(self) -> bool:
+        """Whether one point has so large a share of the sum of squares that few others tell how often its like occurs."""
+        return math.sqrt(float(self.sums[3])) > _LARGEST * float(self.sums[2])
+
+    @property
+    def why_unknown(self) -> str:
+        """Why the mean says nothing at all, "" if it does."""
         if self.n < _LEAST:
             return "there are too few points of the known law"
-        _, _, second, fourth, untold = self.sums.tolist()
-        if untold:
+        if self.sums[4]:
             return "there are places where rounding hides the pdf"
-        if not math.isfinite(fourth):
-            return "the pdf is too large at single points"
-        share = math.sqrt(fourth) / second if second > 0 else 0.0  # at least that of the largest
-        return "the pdf is high where few points of the known law are" if share > _LARGEST else ""
+        return "" if math.isfinite(self.sums[3]) else "the pdf is too large at single points"
+
+    @property
+    def why_not(self) -> str:
+        """Why mean and standard error are no interval, "" if they are one."""
+        heavy = "the pdf is high where few points of the known law are"
+        return self.why_unknown or (heavy if self.dominated else "")
