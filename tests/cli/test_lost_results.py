@@ -127,6 +127,21 @@ def test_a_closed_stderr_costs_nothing(tmp_path, closed):
 
 
 @CLOSED
+@pytest.mark.parametrize("words", ["golden --requests {file} --format csv", "oracle --schema"])
+def test_output_that_is_cut_short_is_told_without_buffers_too(tmp_path, words):
+    """Unbuffered, Python takes what a limited file still had room for as the whole."""
+    requests = tmp_path / "requests.jsonl"
+    mu = ", ".join(str(i / 4000) for i in range(4000))
+    requests.write_text(f'{{"quantity": "phase_pdf", "phase": {{"kind": "rayleigh"}}, "mu": [{mu}]}}\n')
+    words = words.format(file=shlex.quote(str(requests)))
+    command = f"ulimit -f 8; {shlex.quote(sys.executable)} -m fogproof {words} > {tmp_path}/out"
+    environment = {**os.environ, "PYTHONUNBUFFERED": "1"}
+    out = subprocess.run(["bash", "-c", command], stderr=subprocess.PIPE, env=environment)
+    assert out.returncode == 2, out.stderr
+    assert b"File too large" in out.stderr
+
+
+@CLOSED
 def test_help_that_nobody_reads_is_no_rejection():
     reading, writing = os.pipe()
     os.close(reading)

@@ -90,6 +90,7 @@ def main(arguments: list[str] | None = None) -> Any:
     if sys.stderr is None:
         sys.stderr = _nowhere()
     wait_for_streams()
+    _write_whole()
     warnings.showwarning = _warn
     with stoppable() as listening:
         try:
@@ -198,6 +199,15 @@ def _seen_as_unread() -> Iterator[None]:
     except BrokenPipeError:
         silence(sys.stdout)
         raise click.exceptions.Exit(UNREAD) from None
+
+
+def _write_whole() -> None:
+    """Let stdout write all it is given: where PYTHONUNBUFFERED is set, Python takes a part of it for the whole, without a word."""
+    raw = getattr(sys.stdout, "buffer", None)
+    if isinstance(raw, io.RawIOBase):
+        sys.stdout = io.TextIOWrapper(
+            io.BufferedWriter(raw), sys.stdout.encoding, sys.stdout.errors, line_buffering=True, write_through=True
+        )
 
 
 def _nowhere() -> TextIO:
