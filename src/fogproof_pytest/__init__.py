@@ -56,6 +56,8 @@ def pytest_configure(config: pytest.Config) -> None:
     config.stash[_SEED] = told if told is not None else secrets.randbits(62) if seed is None else seed
     config.stash[_ALPHA] = alpha
     folder = config.getoption("--fogproof-report")
+    if folder == "":
+        raise pytest.UsageError("--fogproof-report must name a folder, got '': is a variable of the shell not set?")
     if folder and not hasattr(config, "workerinput"):  # better learnt now than when all tests have run
         from fogproof.errors import InvalidInputError
         from fogproof.reports.files import prepare_folder

@@ -8,11 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from fogproof.runs import case_record, run_record
-from fogproof.text import one_line
+from fogproof.text import one_line, state
 
 Told = dict[tuple[str, int], dict[str, Any]]
 """Verdicts in plain data, by test and number."""
 _MOST = 12
+_INTERRUPTED = 2  # pytest.ExitCode
 
 
 def summary(told: Told, alpha: float, seed: int) -> list[str]:
@@ -51,4 +52,5 @@ def written(told: Told, folder: str, seed: int, alpha: float, exit_code: int, co
     record = run_record(
         cases, kind="tests", seed=seed, alpha=alpha, command=f"pytest {command}", started=now, seconds=seconds
     )
-    return write_report({**record, "exit_code": exit_code}, folder)
+    stopped = state(exit_code == _INTERRUPTED)  # by Ctrl-C, or where tests could not be collected
+    return write_report({**record, "exit_code": exit_code, "state": stopped}, folder)

@@ -156,7 +156,15 @@ def test_a_report_that_cannot_be_written_is_told_before_the_tests_run(tmp_path):
     assert "--force" not in out.stderr  # pytest has no such option
 
 
+def test_a_stopped_session_does_not_look_finished(tmp_path):
+    text = RIGHT + "\n    def test_stop():\n        raise KeyboardInterrupt\n"
+    out = run(tmp_path, text, "--fogproof-report", str(tmp_path / "report"))
+    assert out.returncode == 2
+    assert "Unfinished" in (tmp_path / "report" / "index.html").read_text()
+
+
 def test_wrong_options_are_told(tmp_path):
+    assert "must name a folder, got ''" in run(tmp_path, RIGHT, "--fogproof-report", "").stderr
     assert "--fogproof-alpha must lie in (0, 1)" in run(tmp_path, RIGHT, "--fogproof-alpha", "2").stderr
     marked = RIGHT.replace("    def test", "    import pytest\n\n    @pytest.mark.fogproof(wieght=2)\n    def test")
     assert "the marker fogproof knows" in run(tmp_path, marked).stdout + run(tmp_path, marked).stderr
