@@ -203,11 +203,13 @@ def _seen_as_unread() -> Iterator[None]:
 
 def _write_whole() -> None:
     """Let stdout write all it is given: where PYTHONUNBUFFERED is set, Python takes a part of it for the whole, without a word."""
-    raw = getattr(sys.stdout, "buffer", None)
-    if isinstance(raw, io.RawIOBase):
-        sys.stdout = io.TextIOWrapper(
-            io.BufferedWriter(raw), sys.stdout.encoding, sys.stdout.errors, line_buffering=True, write_through=True
-        )
+    out = sys.stdout
+    raw = getattr(out, "buffer", None)
+    if (
+        isinstance(raw, io.RawIOBase) and out is not None and out is sys.__stdout__
+    ):  # not what a caller has put in its place
+        whole = io.BufferedWriter(raw)
+        sys.stdout = io.TextIOWrapper(whole, out.encoding, out.errors, line_buffering=True, write_through=True)
 
 
 def _nowhere() -> TextIO:
