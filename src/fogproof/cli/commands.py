@@ -205,9 +205,8 @@ def _write_whole() -> None:
     """Let stdout write all it is given: where PYTHONUNBUFFERED is set, Python takes a part of it for the whole, without a word."""
     out = sys.stdout
     raw = getattr(out, "buffer", None)
-    if (
-        isinstance(raw, io.RawIOBase) and out is not None and out is sys.__stdout__
-    ):  # not what a caller has put in its place
+    own = out is sys.__stdout__  # not what a caller has put in its place
+    if own and isinstance(out, io.TextIOWrapper) and isinstance(raw, io.RawIOBase):
         whole = io.BufferedWriter(raw)
         sys.stdout = io.TextIOWrapper(whole, out.encoding, out.errors, line_buffering=True, write_through=True)
 
