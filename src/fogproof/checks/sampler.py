@@ -120,10 +120,10 @@ def check_sampler(
 
 def sampler_check(*arguments: Any, **options: Any) -> SamplerCheck:
     """Return the check that `check_sampler` runs, for the same arguments."""
-    given = signature(check_sampler).bind(*arguments, **options).arguments
-    given |= {name: dict(given.get(name) or {}) for name in ("atoms", "events")}
-    settings: dict[str, Any] = {"resolution": None, "samples": 1_000_000, "alpha": 1e-6, "seed": None}
-    settings |= {name: given.pop(name) for name in settings if name in given}
+    bound = signature(check_sampler).bind(*arguments, **options)
+    bound.apply_defaults()
+    given = bound.arguments | {name: dict(bound.arguments[name] or {}) for name in ("atoms", "events")}
+    settings = {name: given.pop(name) for name in ("resolution", "samples", "alpha", "seed")}
     needed = ("sample", "pdf", "domain", "dimensions")
     parts = {name: value for name, value in given.items() if value is not None or name in needed}
     return SamplerCheck.of(Subject(**parts), **settings)

@@ -82,7 +82,7 @@ def strips(name: str, where: Strips, axes: tuple[str, ...], sums: np.ndarray, al
     """Test sums (4, size, 256): the most conspicuous chi-square of all axes, pairs and levels, its p-value times their number."""
     rivals = sums.shape[1] * _LEVELS
     best: tuple[float, float, int, int, int] = (2.0, 0.0, 0, 0, 0)
-    fewest, doubt = 0, 0.0
+    coarse, doubt = 0, 0.0
     for row in range(sums.shape[1]):
         for level in range(_LEVELS):
             columns = sums[:, row].reshape(4, CELLS // _COARSER**level, -1).sum(axis=2)
@@ -91,15 +91,15 @@ def strips(name: str, where: Strips, axes: tuple[str, ...], sums: np.ndarray, al
             p, statistic, cells = chi_square(columns)
             best = min(best, (p, statistic, cells, row, columns.shape[1]))
             if level == _LEVELS - 1:
-                fewest, doubt = max(fewest, int(pooled(columns[1], LEAST).max()) + 1), float(columns[1].sum())
+                coarse, doubt = max(coarse, int(pooled(columns[1], LEAST).max()) + 1), float(columns[1].sum())
     if best[0] > 1:
         return Finding(name, "not rejected", "too few coins are in doubt: nothing was looked at", alpha=alpha)
     p, statistic, cells, row, parts = best
     p = min(p * rivals, 1.0)
     rejected = p <= alpha
     place = f"{parts} {'strips' if row < len(where.edges) else 'squares'} of {where.named(row, axes)}"
-    seen = detected(fewest, alpha / rivals, doubt)
-    kind = f"misfit that is even in each of {fewest} cells along one axis (root mean square of the ratio of densities less 1)"
+    seen = detected(coarse, alpha / rivals, doubt)
+    kind = f"misfit that is even in each of {coarse} cells along one axis (root mean square of the ratio of densities less 1)"
     return Finding(
         name,
         "rejected" if rejected else "not rejected",
