@@ -16,7 +16,7 @@ from fogproof.study.plan import Batch
 from fogproof.study.stored_batches import Store
 
 ATTEMPTS = 3
-"""A batch that has failed so often is given up for this run, and reported; so is a cell that has ended workers in so many batches."""
+"""A batch that has failed so often is given up for this run, and reported; so is a cell that did in so many batches."""
 AHEAD = 2
 """Batches a worker has waiting, beside the one it draws."""
 

@@ -1,4 +1,4 @@
-"""One's own estimators, called for the first time in processes of their own: what ends its process, or never returns, ends no study."""
+"""One's own estimators, first called in processes of their own: what ends its process, or never returns, ends no study."""
 
 from __future__ import annotations
 
