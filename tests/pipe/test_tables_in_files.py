@@ -46,3 +46,17 @@ def test_tables_that_claim_other_probabilities_are_rejected(tmp_path, law):
     np.savetxt(tmp_path / "x.csv", table, delimiter=",", header=header, comments="", fmt="%.17g")
     verdict = check_file(tmp_path / "x.csv", {"domain": LAWS[law][0]}, Settings(seed=1)).verdict
     assert verdict.outcome == "rejected", verdict
+
+
+def test_distances_beyond_the_wall_are_no_swapped_columns(tmp_path):
+    """Free paths whose clamp to the ray's end is forgotten, a fifth of them; and right ones in the wrong columns."""
+    spec = {
+        "medium": {"sigma_a": 0.3, "sigma_s": 0.5},
+        "ray": {"origin": [0, 0, 0], "direction": [0, 0, 1], "length": 2},
+    }
+    t = -np.log1p(-np.random.default_rng().random(20_000)) / 0.8
+    p = np.where(t < 2, 0.8 * np.exp(-0.8 * t), np.exp(-1.6))
+    for columns, cause in (((t, p), "outside the domain"), ((p, np.minimum(t, 2)), "layout")):
+        np.save(tmp_path / "t.npy", np.column_stack(columns))
+        verdict = check_file(tmp_path / "t.npy", {**spec, "columns": ["x", "pdf"]}).verdict
+        assert (verdict.outcome, verdict.cause) == ("rejected", cause), verdict

@@ -129,7 +129,7 @@ def _of_file(path: Path, base: Spec, settings: Settings) -> Checked:
         }
         return Checked(check_estimator(draws_of(rows, columns), expectation_of(base), **options))
     truth = truth_of(base, precision)
-    hint = misread(truth.domain, rows, columns)
+    hint = misread(truth.domain, rows, columns, truth.density and partial(_value, truth))
     if hint:
         return Checked(failed(ProgramError(f"the file {hint[0]}", hint[1]), settings))
     draw = draw_of(rows, columns, truth.domain)
