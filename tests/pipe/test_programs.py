@@ -97,6 +97,14 @@ def test_what_a_program_does_wrong_is_said(tmp_path, name):
         assert word in str(outcome.verdict)
 
 
+@pytest.mark.parametrize(("more", "words"), [("goodbye!", "wrote 8 bytes more than it was asked for: 'goodbye!'"),
+                                             ('{"n": 3}', "answered once more than it was asked")])  # fmt: skip
+def test_what_comes_after_the_last_answer_is_too_much(tmp_path, more, words):
+    outcome = judged(program(tmp_path, source=f"{SAMPLER}out.write(b'{more}')\n"))
+    assert (outcome.verdict.outcome, outcome.verdict.cause) == ("rejected", "broken protocol")
+    assert words in str(outcome.verdict)
+
+
 GREETINGS = {
     b"": "wrote nothing",
     b"hello\n": "'hello' where its greeting was due",
