@@ -149,6 +149,17 @@ def test_what_cannot_be_read(
         bad.rmdir() if kind is a_folder else bad.unlink(missing_ok=True)
 
 
+@pytest.mark.parametrize("command", [name for name, calls in READS.items() if calls and name not in ("verify", "list")])
+def test_an_input_without_a_name(filled: Callable[[list[str]], list[str]], command: str) -> None:
+    """Neither is one the folder one stands in, nor None."""
+    for call in READS[command]:
+        words = ["" if word.startswith("{bad}") else word for word in call]
+        end = here(Run([command, *filled(words)]))
+        refused(end)
+        assert b"is empty: name a file or folder" in end.err
+        assert not Path("out").exists()
+
+
 @pytest.mark.parametrize("command", WRITES)
 def test_what_cannot_be_written(filled: Callable[[list[str]], list[str]], command: str) -> None:
     refused(here(Run([command, *filled(WRITES[command])])))
