@@ -10,9 +10,12 @@ from fogproof import (
     Product,
     SpherePart,
     Triangle,
+    UnitSphere,
     UnitSquare,
     check_sampler,
 )
+from fogproof.checks.edges import edge_uniforms
+from fogproof.checks.subject import Subject
 from fogproof.errors import InvalidValueError
 
 N = 60_000
@@ -141,3 +144,28 @@ def test_few_of_very_many_numbers_are_decided():
     from scipy.stats import binom
 
     passes(lambda rng, n: rng.binomial(10**5, 0.5, n), binom(10**5, 0.5).pmf, Discrete(10**5 + 1), dimensions=None)
+
+
+def square_window(beyond):
+    """Return a sampler of a square, seen from distance 1, that starts `beyond` its border, its pdf, and what is seen exactly."""
+
+    def sample(u):
+        to = np.column_stack([u * (1 + beyond) - beyond, np.ones(len(u))])
+        return to / np.linalg.norm(to, axis=1)[:, None]
+
+    def inside(w):
+        x, y = w[:, 0] / w[:, 2], w[:, 1] / w[:, 2]
+        return (w[:, 2] > 0) & (x >= 0) & (x <= 1) & (y >= 0) & (y <= 1)
+
+    return sample, lambda w: np.where(inside(w), 1 / np.abs(w[:, 2]) ** 3, 0.0), SpherePart(inside)
+
+
+@pytest.mark.parametrize(("beyond", "outcome"), [(2.0**-53, "not rejected"), (1e-8, "rejected")])
+def test_a_border_that_a_user_draws_exactly_forgives_rounding_alone(beyond, outcome):
+    sample, pdf, part = square_window(beyond)
+    corner = sample(np.zeros((1, 2)))
+    assert not part.inside(corner).any()
+    assert part.contains(corner, 2e-15).all() == (outcome == "not rejected")
+    for domain in (part, UnitSphere()):
+        found = edge_uniforms(Subject(sample, pdf, domain, 2), {})
+        assert found.outcome == outcome, found.message

@@ -12,7 +12,7 @@ import itertools
 import numpy as np
 
 from fogproof.checks.promises import Watch, at_any_atom, inside
-from fogproof.checks.subject import Subject
+from fogproof.checks.subject import Subject, in_domain
 from fogproof.checks.verdict import Finding
 from fogproof.contracts import Draw
 from fogproof.domains import Discrete
@@ -101,7 +101,10 @@ def _holes(subject: Subject, u: np.ndarray, draw: Draw) -> np.ndarray:
 
 
 def _begins(subject: Subject, u: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Return (n,) whether the support begins at x, on the way to what ordinary uniforms beside u give."""
+    """Return (n,) whether the support begins at x, on the way to what ordinary uniforms beside u give.
+
+    The way is straight in the coordinates of a known law, or in space: coordinates turn round at their poles.
+    """
     begun, half = np.zeros(len(x), dtype=bool), np.full((len(x), 1), 0.5)
     for side in (_INWARDS, -_INWARDS):
         beside = np.clip(u + side * (u == 0.5), _INWARDS, 1 - _INWARDS)
@@ -110,6 +113,9 @@ def _begins(subject: Subject, u: np.ndarray, x: np.ndarray) -> np.ndarray:
         begin, end = law.coordinates(x, half), law.coordinates(near, half)
         for share in _TOWARDS:
             begun |= subject.density(law.place(np.minimum(begin + share * (end - begin), 1 - 2.0**-53))) > 0
+            straight = x + share * (near - x)
+            on = np.flatnonzero(~begun & in_domain(subject.domain, straight, subject.roundoff))
+            begun[on] = subject.density(straight[on]) > 0
     return begun
 
 

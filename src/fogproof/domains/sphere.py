@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +16,7 @@ TURN = 2 * np.pi
 _LENGTH = (
     256  # slacks: mu of a lobe with g = 0.999 from its textbook formula is off by so much, and a length is no place
 )
+_BESIDE = 8  # directions around one that is not recognised
 
 
 def azimuth(x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -38,6 +39,15 @@ def versine(x: np.ndarray) -> np.ndarray:
 def unit(x: np.ndarray, slack: float) -> np.ndarray:
     """Return which vectors (n, 3) have length 1; the rounding of a length moves no direction, so more of it is forgiven."""
     return np.abs(squared(x) - 1) <= 2 * _LENGTH * slack
+
+
+def _around(x: np.ndarray, length: float) -> Iterator[np.ndarray]:
+    """Yield (n, 3) steps of the given length across unit vectors (n, 3), evenly around each: no corner of 45 degrees is missed."""
+    first = np.cross(x, np.eye(3)[np.argmin(np.abs(x), axis=1)])
+    first /= np.sqrt(squared(first))[:, None]
+    second = np.cross(x, first)
+    for angle in TURN / _BESIDE * np.arange(_BESIDE):
+        yield length * (np.cos(angle) * first + np.sin(angle) * second)
 
 
 def cap(highest: float) -> Law:
@@ -86,6 +96,8 @@ class UnitHemisphere:
 class SpherePart:
     """The directions that a function of the user's recognises; the pdf is per steradian.
 
+    A direction is also recognised if one beside it is, as far away as rounding may have moved it: see `at_the_ends`.
+
     inside  (n, 3) unit vectors -> (n,) bool
     solid_angle  [sr], if it is known
     """
@@ -111,11 +123,19 @@ class SpherePart:
         return self.solid_angle
 
     def contains(self, x: np.ndarray, slack: float) -> np.ndarray:
-        """Return which vectors have length 1 and are recognised."""
+        """Return which vectors have length 1 and are recognised, or lie so near one that is that rounding explains it."""
+        good = unit(x, slack)
+        recognised = self._recognised(x)
+        at = np.flatnonzero(good & ~recognised)
+        for step in _around(x[at], at_the_ends(slack)) if len(at) else ():
+            recognised[at] |= self._recognised(x[at] + step)
+        return good & recognised
+
+    def _recognised(self, x: np.ndarray) -> np.ndarray:
         recognised = np.asarray(self.inside(x))
         if recognised.shape != (len(x),):
             raise InvalidValueError("inside", f"must return one bool a direction, ({len(x)},)", recognised.shape)
-        return unit(x, slack) & recognised.astype(bool)
+        return recognised.astype(bool)
 
     def law(self, pilot: np.ndarray) -> Law:
         """Return the uniform law on the whole sphere."""

@@ -118,8 +118,10 @@ class Program:
             process, self._process = self._process, None
             process.stop()
             self.said, self.failure = process.said, self.failure or process.failure
-            if not self._waiting and process.rest.startswith(b'{"n"'):
-                self.ahead = self.ahead or "answered once more than it was asked"
+            if not self._waiting and process.extra and not self.ahead:
+                again = process.rest.startswith(b'{"n"')
+                more = f"wrote {process.extra} bytes more than it was asked for: {_shown(process.rest)}"
+                self.ahead = "answered once more than it was asked" if again else more
             if process.note:
                 self.notes.append(process.note)
 
