@@ -18,6 +18,10 @@ LARGEST_SEED = 2**53
 """Whole numbers below it are exact in the float64 of every language."""
 
 _SLACK = 1e-5  # a point that is off by less is read as it was meant
+_SHOWN = 1000  # rows tell which column is which
+_SAME = 1e-3  # of a density: printed numbers may have few digits
+
+Density = Callable[[np.ndarray], np.ndarray]
 
 
 def draw_of(rows: np.ndarray, columns: tuple[str, ...], domain: Domain) -> Draw:
@@ -74,7 +78,7 @@ class PipeSampler:
         draw = draw_of(answer, columns, self.domain)
         if not self._seen and count >= 64:
             self._seen, self.program.shown = True, draw.x
-            hint = misread(self.domain, answer, columns)
+            hint = misread(self.domain, answer, columns, self.pdf)
             if hint:
                 raise self.program.refuse(*hint)
         return draw
@@ -93,10 +97,13 @@ class PipeSampler:
         return self.program.ask(request, rows, len(x), columns, 0, self.parameters)
 
 
-def misread(domain: Domain, rows: np.ndarray, columns: tuple[str, ...]) -> tuple[str, str] | None:
+def misread(
+    domain: Domain, rows: np.ndarray, columns: tuple[str, ...], density: Density | None
+) -> tuple[str, str] | None:
     """Return what is plainly wrong with how the numbers are written, in words and as a class; None if nothing is.
 
-    Only where hardly any point lies in the domain as it is read, and nearly all do as it is read otherwise.
+    Only where hardly any point lies in the domain as it is read, and nearly all do as it is read otherwise; or where the known
+    density of the numbers in one column is what the other one holds.
     """
     places = [i for i, each in enumerate(columns) if each == "x"]
 
@@ -110,11 +117,10 @@ def misread(domain: Domain, rows: np.ndarray, columns: tuple[str, ...]) -> tuple
             inside = domain.contains(x if domain.shape else x[:, 0], _SLACK)
         return float(np.mean(valid & plain & inside & ~tiny.any(axis=1)))
 
-    if columns.count("pdf") == 1 and len(places) == 1 and _exchanged(domain, rows, places[0], columns.index("pdf")):
-        return (
-            "has densities where points are due, and points where densities are due: its columns are swapped",
-            "layout",
-        )
+    pairs = [places[0], *(i for i, each in enumerate(columns) if each == "pdf")]
+    if density is not None and len(pairs) == 2 and not domain.shape and _exchanged(domain, rows[:, pairs], density):
+        words = "has densities where points are due, and points where densities are due: its columns are swapped"
+        return words, "layout"
     if good(rows) > 0.1:
         return None
     if good(swapped(rows)) > 0.9:
@@ -126,16 +132,17 @@ def misread(domain: Domain, rows: np.ndarray, columns: tuple[str, ...]) -> tuple
     return None
 
 
-def _exchanged(domain: Domain, rows: np.ndarray, x: int, pdf: int) -> bool:
-    """Return whether columns of points and densities break a promise in every tenth row, and keep all the other way round."""
-    if domain.shape or not np.isfinite(rows).all():
+def _exchanged(domain: Domain, pairs: np.ndarray, density: Density) -> bool:
+    """Return whether rows (n, 2) hold densities and their points, and not points and their densities."""
+    x, pdf = pairs[:_SHOWN].astype(np.float64).T
+    if not (np.isfinite(x).all() and np.isfinite(pdf).all() and domain.contains(pdf, _SLACK).all()):
         return False
 
-    def kept(points: np.ndarray, densities: np.ndarray) -> float:
-        return float(np.mean(domain.contains(points, _SLACK) & (densities > 0)))
+    def same(points: np.ndarray, densities: np.ndarray) -> bool:
+        with np.errstate(all="ignore"):
+            return float(np.median(np.abs(density(points) / densities - 1))) < _SAME
 
-    given, other = rows[:, x].astype(np.float64), rows[:, pdf].astype(np.float64)
-    return kept(given, other) <= 0.9 and kept(other, given) == 1
+    return same(pdf, x) and not same(x, pdf)
 
 
 def _pairs(rows: np.ndarray) -> np.ndarray:
