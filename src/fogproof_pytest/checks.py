@@ -27,7 +27,7 @@ class Checks:
     ) -> None:
         self._test, self._share, self._seed = test, share, seed
         self._calls, self._passes, self._news = calls, passes, news
-        self._count, self._told, self._running = itertools.count(1), itertools.count(), list[str]()
+        self._count, self._number, self._running = itertools.count(1), itertools.count(), list[str]()
         self._ended = False
 
     def _end(self) -> str:
@@ -48,7 +48,7 @@ class Checks:
             __tracebackhide__ = True
             if self._ended:
                 why = f"{name} was called by the fixture of {self._test}, which had ended: it was not judged"
-                self._news.append((self._test, next(self._told), None, why))
+                self._news.append((self._test, next(self._number), None, why))
                 raise InvalidValueError("fogproof", why, name, "ask for the fixture in the test that uses it")
             self._running.append(name)
             try:
@@ -87,7 +87,7 @@ class Checks:
     def _tell(self, name: str, verdict: Verdict) -> None:
         fails = verdict.outcome == "rejected" or (verdict.outcome == "inconclusive" and not self._passes)
         told = {"check": name, **verdict.to_dict()}
-        self._news.append((self._test, next(self._told), told, f"{name}: {verdict.outcome}" if fails else ""))
+        self._news.append((self._test, next(self._number), told, f"{name}: {verdict.outcome}" if fails else ""))
 
     def _raise(self, verdict: Verdict, about: str = "") -> None:
         """Raise for a verdict that fails the test; `about` says first what it is about."""

@@ -39,7 +39,7 @@ _TABLES = """
 create table study (key text primary key, value text not null, sum integer not null) without rowid;
 create table stretches (id integer primary key, identity text not null, replicates integer not null, sum integer not null);
 create table batches (id integer primary key, moments blob not null, tail blob not null, cost real, wall real not null,
-                      cpu real not null, sum integer not null);
+                      cpu real not null, fixed blob not null, sum integer not null);
 create table failures (id integer primary key, attempts integer not null, error text not null, sum integer not null);
 create table sessions (id integer primary key, started text not null, environment text not null, sum integer not null);
 """

@@ -9,7 +9,7 @@ from fogproof.errors import FogproofError
 from fogproof.study.files import differences
 
 APPLICATION = 0x666F6770  # "fogp"
-VERSION = 3
+VERSION = 4
 TABLES = {"study", "stretches", "batches", "failures", "sessions"}
 
 
