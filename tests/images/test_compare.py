@@ -251,13 +251,6 @@ def test_equal_renders_with_noise_are_no_independent_renders(compared, truth, rn
     assert compare_renders(wrong, SCENE, reference=truth, explain=False).verdict.outcome == "rejected"
 
 
-def test_an_image_is_not_compared_with_itself(tmp_path, truth):
-    format_of("a.npy").write(tmp_path / "a.npy", {"Y": truth.value})
-    (tmp_path / "b.npy").symlink_to("a.npy")
-    with pytest.raises(FogproofError, match=r"b\.npy would be compared with itself"):
-        compare_pictures([tmp_path / "a.npy"], [tmp_path / "b.npy"])
-
-
 def test_what_of_a_file_is_not_looked_at_is_said(tmp_path, compared, truth, rng):
     done = compared(noisy(truth.value, rng), variance=np.where(np.arange(64) < 60, 1.0, np.nan) * np.ones((48, 1)))
     assert done.picture.variance is None
