@@ -73,7 +73,7 @@ HOSTILE = {
     "garbage": ("out.write(os.urandom(64) + b'\\n')", "broken protocol", "the line before its rows"),
     "text in between": ("print('sample', answered, flush=True)", "broken protocol", "'sample 1'"),
     "an error of its own": ('out.write(b\'{"error": "sigma_t is 0"}\\n\')', "reports an error", "says: sigma_t is 0"),
-    "big-endian": ("x.byteswap()", "byte order", "big-endian"),
+    "big-endian": ("x.byteswap()", "byte order", "writes big-endian"),
     "not a number": ("x = array.array('d', [math.nan] * n)", "outside the domain", "nan is not a point"),
     "closes its output": ("sys.stdout.flush(); os.close(1); time.sleep(100)", "dies", "closed its output and runs on"),
     "floods": (
@@ -84,6 +84,21 @@ HOSTILE = {
     "half a line": ("out.write(b'{\"n\": '); out.flush(); time.sleep(100)", "hangs", "gave no answer"),
     "deep": ("out.write(b'[' * 50000 + b'\\n')", "broken protocol", "[[["),
 }
+
+
+@pytest.mark.parametrize(
+    ("answer", "told"), [("x.byteswap()", "reads and writes big-endian"), ("pass", "reads big-endian")]
+)
+@pytest.mark.parametrize("odd", ["math.nan", "[][0]"], ids=["goes on", "dies of nonsense"])
+def test_who_reads_big_endian_numbers_is_told(tmp_path, answer, told, odd):
+    right = "[-math.log1p(-u) for u in rows]"
+    careful = f"[-math.log1p(-u) if 0 <= u < 1 else {odd} for u in (rows.byteswap() or rows)]"
+    verdict = judged(program(tmp_path, answer, source=SAMPLER.replace(right, careful))).verdict
+    if odd == "math.nan":
+        assert verdict.cause == "byte order", verdict
+        assert told in str(verdict)
+    else:
+        assert verdict.cause == "dies", verdict
 
 
 @pytest.mark.parametrize("name", HOSTILE)

@@ -37,6 +37,10 @@ class Program:
     def __exit__(self, _kind: type[BaseException] | None, _error: object, _trace: TracebackType | None) -> None:
         self.stop()
 
+    def another(self) -> Program:
+        """Start the same program once more, for questions that may spoil it."""
+        return Program(self._command, self._timeouts)
+
     def ask(
         self, request: str, rows: np.ndarray, n: int, columns: int, seed: int, parameters: Mapping[str, float]
     ) -> np.ndarray:

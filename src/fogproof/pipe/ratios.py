@@ -16,6 +16,7 @@ from fogproof.checks import Finding, Verdict, check_estimator
 from fogproof.checks.declared import unchecked
 from fogproof.checks.streams import batch_generator
 from fogproof.checks.subject import Subject, in_domain
+from fogproof.checks.telling import few_digits
 from fogproof.contracts import Draw, Reference
 from fogproof.domains import Domain, Law
 from fogproof.errors import SubjectError
@@ -75,6 +76,9 @@ def check_ratios(subject: Subject, draw: Draw, alpha: float, seed: int | None) -
         _promise("domain", outside, f"a point of {subject.domain}", draw.x, "outside the domain"),
         _promise("positive pdf", bad, "of positive finite density", draw.pdf, "claimed hole"),
     ]
+    few = few_digits(subject, draw.x[outside])
+    if few:
+        promises[0] = replace(promises[0], message=promises[0].message + few, cause="coarse numbers")
     negative = float(np.mean(draw.pdf < 0))
     if negative > 0:
         told = " (are they logarithms?)" if negative > _LOGARITHMS else ""
