@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from fogproof.checks.arguments import alpha_of
 from fogproof.errors import FogproofError, InvalidInputError, InvalidValueError, shorten
 from fogproof.input_files import read_text
 from fogproof.scene.files import read_fields
@@ -22,7 +23,6 @@ from fogproof.study.media import sha256_of
 from fogproof.study.methods.table import OWN, MethodField
 from fogproof.study.own_code import NAME, digest_of
 from fogproof.study.question import Question
-from fogproof.validate import number
 
 LARGEST_COUNT = 1 << 40
 LARGEST_REPLICATES = 1 << 24
@@ -84,7 +84,7 @@ class Study:
         for name, least in (("replicates", 4), ("batch", 64), ("seed", 0)):
             if not least <= getattr(self, name) < 1 << 63:
                 raise InvalidValueError(name, f"must be a whole number >= {least}", getattr(self, name))
-        number("alpha", self.alpha, "must lie in (0, 1)", 0, 1, open_ends=True)
+        alpha_of(self.alpha)
         names = [scene.name for scene in self.scenes]
         if not names:
             raise InvalidValueError("scenes", "must not be empty", [], "add a [[scenes]] table")
