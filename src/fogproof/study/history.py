@@ -74,7 +74,7 @@ def _of_speeds(speeds: Speeds, changes: Sequence[dict[str, Any]]) -> str:
         return f"; of less than {LEAST} estimators a change of speed is hardly told from a change of the machine"
     best, worst = (f"{min(end(resolutions), _HARDLY):.3g}" for end in (min, max))
     told = best if best == worst else f"{best} to {worst}"
-    more = ", more batches tell more: raise `replicates`" if max(resolutions) >= _HARDLY else ""
+    more = "; raise replicates to see less" if max(resolutions) >= _HARDLY else ""
     return f"; an estimator {told} times as slow, or as fast, would have been seen{more}"
 
 
