@@ -118,6 +118,7 @@ def test_what_is_no_number_has_no_bias(tmp_path):
 
 
 DECLARING = """
+    import numpy as np
     from fogproof.contracts import Reference
 
     class Mine:
@@ -134,7 +135,12 @@ DECLARING = """
 @pytest.mark.parametrize(
     ("name", "value", "rule"),
     [
-        ("drawn", "rng.random(n) * 1j", "draw: TypeError: must return real numbers, got complex128"),
+        (
+            "drawn",
+            "rng.random(n) * 1j",
+            "draw must return real numbers, got dtype complex128; return the real or the imaginary part",
+        ),
+        ("drawn", "np.array(['1.5'] * n)", "draw must return real numbers, got dtype <U3"),
         ("of_object", "self.variance = -1", "variance must be finite and >= 0, got -1.0; give the exact"),
         ("of_object", "self.variance = 1j", "variance must be a number"),
         ("of_object", "self.variance = [1, 2]", "variance must be a single number"),
@@ -147,7 +153,7 @@ DECLARING = """
 def test_what_breaks_its_contract_is_named_before_anything_runs(tmp_path, name, value, rule):
     whole = {"of_class": "pass", "of_object": "pass", "drawn": "rng.random(n)"}
     path = study_file(tmp_path / "s", [{"kind": "my_module:Mine"}], DECLARING.format(**{**whole, name: value}))
-    with pytest.raises(FogproofError, match=rf"study\.toml: scene 'fog', my_module:Mine: my_module:Mine: {rule}"):
+    with pytest.raises(FogproofError, match=rf"study\.toml: scene 'fog', my_module:Mine: {rule}"):
         prepare(cells_of(read_study(path)))
     path = study_file(tmp_path / "s", [{"kind": "my_module:Mine"}], DECLARING.format(**whole))
     prepare(cells_of(read_study(path)))

@@ -310,3 +310,11 @@ def test_a_store_that_is_no_file_is_told(tmp_path):
     (tmp_path / FILE).symlink_to(os.devnull)
     with pytest.raises(StoreError, match=r"sqlite is no file; remove it"), opened(tmp_path, STUDY):
         pass
+
+
+def test_what_would_undo_a_store_is_damage(tmp_path):
+    with opened(tmp_path, STUDY):
+        pass
+    tampered(tmp_path / FILE, "create trigger t before insert on batches begin select raise(ignore); end")
+    with pytest.raises(StoreError, match="it holds triggers or views"), opened(tmp_path, STUDY):
+        pass

@@ -138,8 +138,13 @@ def prepare(cells: list[Cell], tried: bool = False) -> None:
             if not (tried and isinstance(cell.method, Own)):
                 cell.estimator(cell.counts[0])
         except FogproofError as error:
-            place = f"{cell.study.origin}: scene {cell.scene.name!r}, {cell.name}"
-            raise InvalidInputError(f"{place}: {error}", error.path) from None
+            raise told_of(cell.study, cell.scene, cell.name, error) from None
+
+
+def told_of(study: Study, scene: StudyScene, name: str, error: FogproofError) -> InvalidInputError:
+    """Return what is wrong with an estimator of a scene; an error that bears its name says it once."""
+    what = str(error).removeprefix(f"{name}: ")
+    return InvalidInputError(f"{study.origin}: scene {scene.name!r}, {name}: {what}", error.path)
 
 
 @lru_cache(maxsize=4)

@@ -14,7 +14,8 @@ from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.statistics.tails import normal_quantile
 from fogproof.checks.statistics.welch import difference_test
 from fogproof.study.convergence import Z
-from fogproof.study.speed_change import LEAST, SpeedChange, Speeds, speed_changes
+from fogproof.study.speed_change import LEAST, SpeedChange, Speeds, estimate, speed_changes
+from fogproof.study.speed_change import became as became_speed
 
 
 def compare(before: dict[str, Any], after: dict[str, Any], alpha: float = 1e-6) -> dict[str, Any]:
@@ -71,16 +72,17 @@ def _of_speeds(speeds: Speeds, changes: Sequence[dict[str, Any]]) -> str:
     resolutions = [change["time"]["resolution"] for change in changes if change["time"]]
     if speeds.against == "nothing":
         return f"; of less than {LEAST} estimators a change of speed is hardly told from a change of the machine"
-    if max(resolutions) > _HARDLY:
-        return "; of so few batches a change of speed is hardly told: raise `replicates`"
-    return f"; an estimator {max(resolutions):.3g} times as slow, or as fast, would have been seen"
+    best, worst = (f"{min(end(resolutions), _HARDLY):.3g}" for end in (min, max))
+    told = best if best == worst else f"{best} to {worst}"
+    more = "; raise replicates to see less" if max(resolutions) >= _HARDLY else ""
+    return f"; an estimator {told} times as slow, or as fast, would have been seen{more}"
 
 
 def _change(
-    scene: str, old: dict[str, Any], young: dict[str, Any], speed: SpeedChange | None, alpha: float
+    scene: str, old: dict[str, Any], young: dict[str, Any], speed: Sequence[SpeedChange], alpha: float
 ) -> dict[str, Any]:
-    became = [*_biased(old, young, alpha), *_noisier(old, young, alpha), *(speed.became(alpha) if speed else [])]
-    time = None if speed is None else {**speed.estimate(), "resolution": speed.resolution(alpha)}
+    became = [*_biased(old, young, alpha), *_noisier(old, young, alpha), *became_speed(speed, alpha)]
+    time = estimate(speed, alpha) if speed else None
     return {"scene": scene, "estimator": young["name"], "became": became, "time": time, "variance": _ratio(old, young)}
 
 

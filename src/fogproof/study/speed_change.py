@@ -1,8 +1,8 @@
 """How much longer an estimate takes than it did: two runs on machines that are faster on one day than on another.
 
-Where both runs timed the same fixed work, times over its times are compared, of one estimator as of many. Elsewhere the common
-change of all estimators' times is taken out, and how much the times of the others wander says how much a single one must change to
-be noticed; of a few estimators that tells nothing.
+Where both runs timed the same fixed work, times over its times are compared, of one estimator as of many. Of `LEAST` estimators or
+more, the common change of all their times is taken out as well, and how much the times of the others wander says how much a single
+one must change to be noticed.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from fogproof.study.convergence import CONFIDENCE, Z
 from fogproof.study.fixed_work import COLUMNS
 
 LEAST = 4
-"""Estimators that are needed to tell a change of the machine from a change of one, where no fixed work was timed."""
+"""Estimators that are needed to tell a change of the machine from a change of one without fixed work."""
 ASIDE = math.log(1.1)
 """How far times over those of fixed work change from run to run of the same code beside what the sorts of work disagree by: a
 process meets its memory in another layout. Measured by `tools/study_speeds.py`."""
@@ -26,6 +26,7 @@ SEEN = 0.999
 """Probability with which a change of the stated resolution is said."""
 _MAD = 1.4826
 """From the median absolute deviation to the standard deviation of a normal law."""
+Against = Literal["fixed-work", "each-other", "nothing"]
 _Pairs = Sequence[tuple[dict[str, Any], dict[str, Any]]]
 
 
@@ -64,16 +65,16 @@ class SpeedChange:
 
 @dataclass(frozen=True)
 class Speeds:
-    """The changes of all estimators, None of those that have no time in both runs.
+    """The changes of all estimators, told in several ways, or in none where there is no time in both runs.
 
     machine  the factor that was taken out of all times, and `wander`, the scatter of what is left
     against  what they were told against: "fixed-work", "each-other" or "nothing"
     """
 
-    changes: list[SpeedChange | None]
+    changes: list[tuple[SpeedChange, ...]]
     machine: float
     wander: float
-    against: str
+    against: Against
 
 
 def speed_changes(pairs: _Pairs, same_machine: bool) -> Speeds:
@@ -83,19 +84,30 @@ def speed_changes(pairs: _Pairs, same_machine: bool) -> Speeds:
     """
     timings = [_at_common_count(old, young) for old, young in pairs]
     plain = [None if two is None else _plain(*two) for two in timings]
-    fixed = [None if two is None else _over_fixed_work(*two) for two in timings] if same_machine else []
-    if any(fixed) and all(f or p is None for f, p in zip(fixed, plain, strict=True)):
-        common = [p.off - f.off for f, p in zip(fixed, plain, strict=True) if f and p]
-        aside = [f.aside for f in fixed if f]
-        return Speeds(fixed, bounded_exp(float(np.median(common))), float(np.median(aside)), "fixed-work")
+    fixed = [None if two is None or not same_machine else _over_fixed_work(*two) for two in timings]
     offs = np.array([p.off for p in plain if p])
-    if len(offs) < LEAST:
-        middle, wander, against = 0.0, math.log(2), "nothing"
-    else:
-        middle, against = float(np.median(offs)), "each-other"
-        wander = _MAD * float(np.median(np.abs(offs - middle)))
-    changes = [p and SpeedChange(p.off - middle, 0.0, math.hypot(p.scatter, wander), math.inf) for p in plain]
-    return Speeds(changes, bounded_exp(middle), wander, against)
+    middle = float(np.median(offs)) if len(offs) >= LEAST else 0.0
+    wander = _MAD * float(np.median(np.abs(offs - middle))) if len(offs) >= LEAST else math.log(2)
+    others = [p and SpeedChange(p.off - middle, 0.0, math.hypot(p.scatter, wander), math.inf) for p in plain]
+    if not any(fixed):
+        against: Against = "each-other" if len(offs) >= LEAST else "nothing"
+        return Speeds([(o,) if o else () for o in others], bounded_exp(middle), wander, against)
+    ways = [
+        tuple(way for way in (f, o if len(offs) >= LEAST else None) if way) for f, o in zip(fixed, others, strict=True)
+    ]
+    machine = np.median([p.off - f.off for f, p in zip(fixed, plain, strict=True) if f and p])
+    return Speeds(ways, bounded_exp(float(machine)), float(np.median([f.aside for f in fixed if f])), "fixed-work")
+
+
+def became(ways: Sequence[SpeedChange], alpha: float) -> list[str]:
+    """Say which way an estimator's time changed, if one of the ways that it is told in says so; they share alpha."""
+    return next((said for way in ways if (said := way.became(alpha / len(ways)))), [])
+
+
+def estimate(ways: Sequence[SpeedChange], alpha: float) -> dict[str, float]:
+    """Return the factor with its interval, by the way that is surest, and the resolution."""
+    surest = min(ways, key=lambda way: way.reach(alpha))
+    return {**surest.estimate(), "resolution": surest.resolution(alpha / len(ways))}
 
 
 def _at_common_count(old: dict[str, Any], young: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any]] | None:

@@ -7,7 +7,8 @@ from functools import partial
 import numpy as np
 
 from fogproof.checks.limits import isolated
-from fogproof.errors import FogproofError, InvalidInputError
+from fogproof.errors import FogproofError
+from fogproof.study.cells import told_of
 from fogproof.study.drawn import numbers_of
 from fogproof.study.files import Study, study_of
 from fogproof.study.methods.own import Own
@@ -30,8 +31,7 @@ def try_own(study: Study) -> None:
                 try:
                     isolated(partial(_call, study.text, study.folder, number, place), preload=[WORKER])
                 except FogproofError as error:
-                    what = f"{study.origin}: scene {scene.name!r}, {name_of(method)}: {error}"
-                    raise InvalidInputError(what, error.path) from None
+                    raise told_of(study, scene, name_of(method), error) from None
 
 
 def _call(text: str, folder: str, number: int, place: int) -> None:
