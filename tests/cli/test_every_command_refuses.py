@@ -195,3 +195,14 @@ def test_a_folder_into_which_another_run_writes(filled: Callable[[list[str]], li
     os.close(other)
     assert (end.code, b"another run of fogproof writes into busy" in end.err) == (2, True), end.err
     assert not [*Path("busy").iterdir()]
+
+
+@pytest.mark.parametrize("digits", ["9" * 5000, "0x" + "f" * 5000], ids=["decimal", "hexadecimal"])
+@pytest.mark.parametrize("command", ["plan", "study", "check", "export", "oracle"])
+def test_an_integer_beyond_all_numbers(filled: Callable[[list[str]], list[str]], command: str, digits: str) -> None:
+    """Python refuses to read one, and to print another, in words for programmers."""
+    words = filled(next(call for call in READS[command][::-1] if "{bad}.toml" in call))
+    Path("bad.toml").write_text(f"seed = {digits}\nray = [{digits}]\n")
+    end = here(Run([command, *words]))
+    refused(end)
+    assert b"an integer has too many digits" in end.err

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,7 +16,7 @@ import numpy as np
 
 from fogproof.checks.arguments import alpha_of
 from fogproof.errors import FogproofError, InvalidInputError, InvalidValueError, shorten
-from fogproof.input_files import read_text
+from fogproof.input_files import parse_toml, read_text
 from fogproof.scene.files import read_fields
 from fogproof.study.media import sha256_of
 from fogproof.study.methods.table import OWN, MethodField
@@ -103,8 +102,8 @@ def read_study(path: str | Path) -> Study:
     path = Path(path)
     text = read_text(path, "the study file")
     try:
-        table = tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
+        table = parse_toml(text)
+    except (ValueError, RecursionError) as error:
         raise InvalidInputError(f"{path} is not valid TOML: {error}", str(path)) from None
     if "scenes" not in table and "ray" in table:
         raise InvalidInputError(
