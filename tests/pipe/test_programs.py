@@ -74,7 +74,7 @@ HOSTILE = {
     "text in between": ("print('sample', answered, flush=True)", "broken protocol", "'sample 1'"),
     "an error of its own": ('out.write(b\'{"error": "sigma_t is 0"}\\n\')', "reports an error", "says: sigma_t is 0"),
     "big-endian": ("x.byteswap()", "byte order", "writes big-endian"),
-    "not a number": ("x = array.array('d', [math.nan] * n)", "outside the domain", "nan is not a point"),
+    "not a number": ("x = array.array('d', [math.nan] * n)", "not a number", "nan is not a point"),
     "closes its output": ("sys.stdout.flush(); os.close(1); time.sleep(100)", "dies", "closed its output and runs on"),
     "floods": (
         "while True: out.write(b'y' * 65536)",

@@ -60,3 +60,18 @@ def test_distances_beyond_the_wall_are_no_swapped_columns(tmp_path):
         np.save(tmp_path / "t.npy", np.column_stack(columns))
         verdict = check_file(tmp_path / "t.npy", {**spec, "columns": ["x", "pdf"]}).verdict
         assert (verdict.outcome, verdict.cause) == ("rejected", cause), verdict
+
+
+def test_a_table_of_cosines_may_say_so(tmp_path):
+    mu = np.linspace(-1, 1, 5)
+    np.savetxt(
+        tmp_path / "pdf.csv",
+        np.column_stack([mu, 0 * mu + 1 / (4 * np.pi)]),
+        delimiter=",",
+        header="cosine,pdf",
+        comments="",
+    )
+    z = np.random.default_rng().normal(size=(4000, 3))
+    np.save(tmp_path / "x.npy", z / np.linalg.norm(z, axis=1)[:, None])
+    spec = {"domain": "sphere", "axis": [0, 0, 1], "table": str(tmp_path / "pdf.csv")}
+    assert check_file(tmp_path / "x.npy", spec).verdict.outcome == "not rejected"

@@ -30,12 +30,14 @@ _CAUSES = {
 
 
 _POLE = ": take the distance from it for the coordinate, where numbers are finer, and what is there is judged too"
+_NO_NUMBER = ", which has a part that is no number"
 _TELLING = {
     "%.17g": "coarse numbers",
     "all are of single precision": "coarse numbers",
     "all are of half precision": "coarse numbers",
     " times pdf)": "wrong measure",
     "pdf is nan at": "not a number",
+    _NO_NUMBER: "not a number",
     "pdf is -": "negative pdf",
 }
 """Words of an example that say more than the name of the promise."""
@@ -91,7 +93,12 @@ class Watch:
         subject, x = self.subject, draw.x
         within = inside(subject, draw)
         few = few_digits(subject, x[~within]) or nearly(subject, x, ~within)
-        self._note("domain", ~within, lambda i: f"x = {shorten(x[i])} is not a point of {subject.domain}{few}", len(x))
+
+        def outside(i: int) -> str:
+            why = _NO_NUMBER if np.isnan(x[i]).any() else few
+            return f"x = {shorten(x[i])} is not a point of {subject.domain}{why}"
+
+        self._note("domain", ~within, outside, len(x))
         good = within
         if subject.atoms:
             good = good & ~at_any_atom(subject, x)

@@ -16,7 +16,7 @@ from fogproof.text import beginning
 
 _MOST = 2**30  # bytes that are read
 _LONGEST_HEADER = 10_000  # of a .npy file
-_NAMES = {"y": "x", "z": "x", "w": "x", "density": "pdf", "mu": "x", "t": "x"}
+_NAMES = {"y": "x", "z": "x", "w": "x", "density": "pdf", "mu": "x", "cosine": "x", "t": "x"}
 _KNOWN = ("x", "pdf", "weight", "event", "valid", "value", "cost", "order", "stderr")
 
 
