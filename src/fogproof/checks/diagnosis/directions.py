@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import partial
 from itertools import permutations
 from typing import Any
@@ -19,6 +20,7 @@ _PER_CELL = 8  # samples in a cell, seen and expected, that tell a density
 _UNIT_LENGTH = 0.3  # relative error of a direction that cells tell
 _LINEAR = 1e-6  # share of the variance of a logarithm that a line leaves
 _CONSTANT = 0.02  # deviation of the logarithm of a ratio of two lobes that are one
+_OUTER, _STEPS = 512, 2000  # samples that may bound a cone, and steps towards its axis
 _LEAN = 0.03  # mean length of directions that have a direction
 
 
@@ -41,15 +43,32 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
             names = "".join("xyz"[i] for i in order)
             words = f"these samples fit the pdf with its axes (x, y, z) taken for ({', '.join(names)})"
             yield Hypothesis("swapped axes", words, of_points(partial(np.take, indices=order, axis=1)))
+    yield from _sines(setting)
+    yield from _about_the_mean(setting)
+    yield from _flat(setting)
+    yield from _half_vectors(setting)
+    yield from _frames(setting)
+    yield from _lobes(setting)
+    yield from _powers(setting)
+    yield Hypothesis(
+        "another parameter",
+        "these samples fit the pdf raised to the power {value}, as of a broader or a narrower lobe",
+        lambda s, a: lambda x: np.maximum(s.p(x), 0.0) ** a,
+        (0.3, 0.6, 0.8, 0.95, 1.05, 1.25, 1.7, 3.0),
+        null=1.0,
+    )
+    yield from grids.of_directions(setting)
+
+
+def _sines(setting: Setting) -> Iterator[Hypothesis]:
     sine = "missing Jacobian", "a sine is missing: these samples are uniform in theta where the pdf means solid angle"
     yield Hypothesis(*sine, lambda s, _: lambda x: s.p(x) / _sine(x))
     yield Hypothesis(
         "missing Jacobian", "these samples have a sine of theta too many", lambda s, _: lambda x: s.p(x) * _sine(x)
     )
-    yield from _flat(setting)
-    yield from _half_vectors(setting)
-    yield from _frames(setting)
-    yield from _lobes(setting)
+
+
+def _powers(setting: Setting) -> Iterator[Hypothesis]:
     yield Hypothesis(
         "wrong power",
         "these samples fit the pdf times a power of the cosine, {value}",
@@ -68,7 +87,7 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
         "stretched",
         "these samples fit the pdf with x and y stretched by {value}",
         lambda s, a: s.moved(lambda x: _unit(x * (1 / a, 1 / a, 1.0)), _squeezed(1 / a)),
-        (0.25, 0.5, 0.7, 0.9, 0.97, 1.03, 1.1, 1.4, 2.0, 4.0),
+        (0.04, 0.1, 0.25, 0.5, 0.7, 0.9, 0.97, 1.03, 1.1, 1.4, 2.0, 4.0, 10.0, 25.0),
         null=1.0,
     )
     yield Hypothesis(
@@ -79,7 +98,60 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
         known_number({2.0: "a square root of the cosine is missing", 0.5: "a square root too many"}),
         null=1.0,
     )
-    yield from grids.of_directions(setting)
+
+
+def _about_the_mean(setting: Setting) -> Iterator[Hypothesis]:
+    """Yield what may have happened about the mean direction of the claim, if it has one that is not z, and a cone too narrow."""
+    yield from _cone(setting)
+    mean = setting.claimed_mean()
+    length = float(np.linalg.norm(mean))
+    if length < _LEAN or np.linalg.norm(np.cross(mean, (0, 0, 1))) < _ALONG * length:
+        return
+    axis = mean / length
+    frame = _turn(axis, np.array([0.0, 0.0, 1.0]))
+    name = " about (" + ", ".join(f"{c:.3f}" for c in axis) + ")"
+    known = [
+        (setting, _turned(setting, frame))
+    ]  # the last one: hypotheses are asked of the same points again and again
+
+    def lifted(hypothesis: Hypothesis, s: Setting, value: float) -> Density:
+        if known[0][0] is not s:
+            known[0] = s, _turned(s, frame)
+        turned = known[0][1]
+        density = hypothesis.density(turned, value)
+        return lambda x: density(turned.contrast.points if x is s.contrast.points else x @ frame.T)
+
+    for hypothesis in (*_sines(known[0][1]), *_powers(known[0][1])):
+        yield replace(hypothesis, words=hypothesis.words + name, density=partial(lifted, hypothesis))
+
+
+def _turned(setting: Setting, frame: np.ndarray) -> Setting:
+    """Return what hypotheses may look at in another frame, of orthonormal rows (3, 3)."""
+    contrast = setting.contrast
+    turned = replace(contrast, x=contrast.x @ frame.T, z=contrast.z @ frame.T)
+    other = replace(setting, claim=lambda y: setting.p(y @ frame), contrast=turned)
+    other.__dict__["_at_points"] = setting.p(contrast.points)
+    return other
+
+
+def _cone(setting: Setting) -> Iterator[Hypothesis]:
+    """Yield that all samples lie in a cone, of which the claim has more: the narrowest (Badoiu & Clarkson 2003)."""
+    x = setting.contrast.x
+    axis = x.mean(axis=0)
+    if np.linalg.norm(axis) < _LEAN:
+        return
+    for _ in range(2):
+        outer = x[np.argsort(x @ axis)[:_OUTER]]
+        for i in range(1, _STEPS):
+            axis = axis / np.linalg.norm(axis)
+            axis = axis + (outer[np.argmin(outer @ axis)] - axis) / (i + 1)
+    axis /= np.linalg.norm(axis)
+    least = float((x @ axis).min())
+    if least < 0:
+        return
+    angle, to = float(np.degrees(np.arccos(min(least, 1.0)))), ", ".join(f"{c:.4f}" for c in axis)
+    words = f"no sample lies farther than {angle:.4g} degrees from ({to}), and the pdf has more; the others fit it"
+    yield Hypothesis("missing tail", words, lambda s, _: lambda x: s.p(x) * (x @ axis >= least))
 
 
 def _flat(setting: Setting) -> Iterator[Hypothesis]:
@@ -229,6 +301,7 @@ def _lobes(setting: Setting) -> Iterator[Hypothesis]:
             f"these samples fit {law} = {{value}}" + (own if null is None else f"; the pdf's is {null:.4g}"),
             about(f, null),
             trials,
+            fitted=null is None,  # which law
             null=null,
         )
     yield Hypothesis(
@@ -242,7 +315,7 @@ def _fisher(mu: np.ndarray, kappa: float | np.ndarray) -> np.ndarray:
 
 def _kappa(setting: Setting, axis: np.ndarray) -> float | None:
     """Return the parameter of a claim that is a von Mises-Fisher lobe itself, None if it is none: its logarithm is linear."""
-    x = setting.contrast.x[:512]
+    x = setting.claimed_points(512)
     p = setting.p(x)
     if not np.all(p > 0):
         return None
@@ -265,7 +338,7 @@ def schlick(mu: np.ndarray, k: float | np.ndarray) -> np.ndarray:
 
 def _own(setting: Setting, axis: np.ndarray, f: Callable[[Any, Any], np.ndarray]) -> float | None:
     """Return the parameter of a claim that is such a lobe itself, None if it is none: its ratio to one as wide is a constant."""
-    x = setting.contrast.x[:512]
+    x = setting.claimed_points(512)
     p, mu = setting.p(x), x @ axis
     if not np.all(p > 0):
         return None
