@@ -15,10 +15,12 @@ from fogproof.checks.diagnosis.factors import named_factor
 from fogproof.checks.diagnosis.fitting import likeliest
 from fogproof.checks.diagnosis.patience import OutOfTimeError, limited
 from fogproof.checks.diagnosis.points import few_values, single_points
+from fogproof.checks.diagnosis.together import dependent
 from fogproof.checks.statistics.repeats import KEPT
 from fogproof.checks.streams import batch_generator
 from fogproof.checks.subject import Subject
 from fogproof.checks.verdict import Finding
+from fogproof.domains import Product
 from fogproof.errors import shorten
 
 _PLACES = {"skipped band", "missing tail", "missing patch"}  # told by one place alone: only if that explains the misfit
@@ -120,6 +122,12 @@ def _searched(
     found = explanation(subject, setting, base, samples, seed)
     if found is not None and not (cause in _ZERO and found[0] in _ANYTHING):
         return found
+    if (
+        isinstance(subject.domain, Product)
+        and base.left > PLAIN
+        and (told := dependent(subject, subject.domain, samples, seed))
+    ):
+        return "correlation", told
     return "shape" if cause in _PLACES and base.left > PLAIN else cause, ""
 
 

@@ -8,14 +8,14 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from fogproof.checks.diagnosis import directions, holes, lines, numbers, parts, regions
+from fogproof.checks.diagnosis import directions, holes, lines, numbers, parts, regions, turns
 from fogproof.checks.diagnosis.contrast import Contrast, Fit, claimed
-from fogproof.checks.diagnosis.fitting import Explained, judged, likeliest, nearest, sharpened
+from fogproof.checks.diagnosis.fitting import TIE, Explained, judged, likeliest, nearest, sharpened
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting
 from fogproof.checks.diagnosis.shape import unexplained
 from fogproof.checks.streams import batch_generator
 from fogproof.checks.subject import Subject
-from fogproof.domains import Discrete, HalfLine, Interval, Product, RealLine, UnitHemisphere, UnitSphere
+from fogproof.domains import Discrete, HalfLine, Interval, Product, RealLine, Rotations, UnitHemisphere, UnitSphere
 
 SIZES = (1 << 14, 1 << 16, 1 << 18)  # samples: as few as show the misfit plainly
 PLAIN = 1000.0  # chi-square that is plain
@@ -68,8 +68,10 @@ def explanation(subject: Subject, setting: Setting, base: Fit, samples: int, see
     if not near:
         return best.cause, told
     if all(abs(each.fit.likelihood - best.fit.likelihood) < _SAME for each in near):
-        return best.cause, f"{told}; that is the same as if {'; or '.join(each.words for each in near)}"
-    return "shape", f"several hypotheses explain it alike: {'; or '.join(each.words for each in (best, *near))}"
+        others = dict.fromkeys(each.words for each in near)
+        return best.cause, f"{told}; that is the same as: {'; '.join(others)}"
+    alike = dict.fromkeys(each.words for each in (best, *near))
+    return "shape", f"several hypotheses explain it alike: {'; or '.join(alike)}"
 
 
 def explained_by(setting: Setting, found: Explained) -> tuple[float, float]:
@@ -100,12 +102,12 @@ def _candidates(
     if many is None or many is setting:
         return setting, found
     better = [sharpened(many, each) for each in found]
-    drawn = {
-        each.cause for each in found if not each.hypothesis.trials
-    }  # what they say may be told by samples, better by many
-    if drawn:
+    told = {_NUMBER.sub("", each.hypothesis.words) for each in found if not each.hypothesis.trials}
+    if told:  # by numbers that samples gave, perhaps: many give better ones
         again = [*of_domain(many), *holes.hypotheses(many)]
-        better += [judged(many, each, 0.0, 0.0, 0.0) for each in again if not each.trials and each.cause in drawn]
+        for order, each in enumerate(again):
+            if not each.trials and _NUMBER.sub("", each.words) in told:
+                better.append(judged(many, each, 0.0, 0.0, -TIE * order / len(again)))
     return many, sorted(better, key=lambda each: each.score, reverse=True)
 
 
@@ -138,6 +140,8 @@ def of_domain(setting: Setting) -> Iterator[Hypothesis]:
             return lines.hypotheses(setting)
         case Discrete():
             return numbers.hypotheses(setting)
+        case Rotations():
+            return turns.hypotheses(setting)
         case Product() as product:
             return parts.hypotheses(setting, product, of_domain)
     if setting.domain.shape == (3,) and np.allclose(np.sum(setting.contrast.x[:99] ** 2, axis=1), 1):

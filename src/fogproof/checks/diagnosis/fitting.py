@@ -15,7 +15,7 @@ _SCREENED = 1 << 12  # samples on which all hypotheses are tried first, with a f
 _TRIED = 12  # of them that are fitted closer, on as many samples as show the misfit
 _TELLING, _MOST = 200.0, 1 << 16  # chi-square of the misfit on those samples, and most of them
 _FALLEN, _DOUBLED = 0.3, 16  # of log-likelihood beside its maximum; times at most that an error is doubled
-_TIE = 1.5  # of log-likelihood: the simplest hypothesis may have so much less than the last one
+TIE = 1.5  # of log-likelihood: the simplest hypothesis may have so much less than the last one
 _APART = 3.0  # standard errors between a parameter and the claim's
 _NEAR = 0.1  # of the way from the null to the nearest trial: a first step
 _TELLING_NUMBERS = math.log(10)  # what it costs to choose among so many
@@ -90,7 +90,7 @@ def likeliest(setting: Setting, base: Fit, hypotheses: list[Hypothesis]) -> list
             value, error = _polished(setting, hypothesis, value, error)
             if hypothesis.null is not None and abs(value - hypothesis.null) < _APART * error:
                 continue  # nothing tells it from the claim
-        found.append(judged(setting, hypothesis, value, error, _TIE * order / len(hypotheses)))
+        found.append(judged(setting, hypothesis, value, error, TIE * order / len(hypotheses)))
     return sorted(found, key=lambda one: one.score, reverse=True)
 
 
@@ -122,7 +122,7 @@ def nearest(middle: Setting, setting: Setting, hypotheses: list[Hypothesis]) -> 
     found = []
     for _, order, hypothesis, value, error in sorted(tried, key=lambda one: one[:2], reverse=True)[:_KEPT]:
         value, error, _ = _parabola(setting, hypothesis, value, error, _likelihood(setting, hypothesis, value))
-        found.append(judged(setting, hypothesis, value, error, _TIE * order / len(hypotheses)))
+        found.append(judged(setting, hypothesis, value, error, TIE * order / len(hypotheses)))
     return sorted(found, key=lambda one: one.score, reverse=True)
 
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from functools import partial
 
 import numpy as np
 
+from fogproof.checks.diagnosis.contrast import Density
 from fogproof.checks.diagnosis.grids import SHIFTS
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting, known_number
 from fogproof.domains import HalfLine, Interval, RealLine
@@ -93,20 +95,18 @@ def _turned_or_shifted_round(domain: Interval) -> Iterator[Hypothesis]:
 
 def _of_another_scale(setting: Setting, origin: float) -> Iterator[Hypothesis]:
     """Yield a stretch, and a power of the pdf: that is another scale too where its logarithm is a parabola, or a line."""
-    yield _stretched(origin, "")
-    words = "these samples fit the pdf of an exponent {value} times as large"
-    cause = "wrong scale"
-    if not _parabolic(setting):
+    powers = partial(Hypothesis, density=_to_the_power, trials=SCALES, null=1.0)
+    if _parabolic(setting):
+        yield powers("wrong scale", "these samples fit the pdf of an exponent {value} times as large", named=_EXPONENTS)
+        yield _stretched(origin, "")
+    else:
+        yield _stretched(origin, "")
         words = "these samples fit the pdf raised to the power {value}, as of another parameter of its tails"
-        cause = "another parameter"
-    yield Hypothesis(
-        cause,
-        words,
-        lambda s, a: lambda x: np.maximum(s.p(x), 0.0) ** a,
-        SCALES,
-        _EXPONENTS if cause == "wrong scale" else lambda value, error: "",
-        null=1.0,
-    )
+        yield powers("another parameter", words)
+
+
+def _to_the_power(setting: Setting, power: float) -> Density:
+    return lambda x: np.maximum(setting.p(x), 0.0) ** power
 
 
 def _parabolic(setting: Setting) -> bool:
