@@ -141,7 +141,7 @@ def write_large(folder: Path, study: Study, total: int) -> None:
     with opened(folder, study) as store:
         for start in range(0, total, 50_000):
             ids = range(start, min(start + 50_000, total))
-            store.add(BatchResult(i, *contents[i % 64], 1.0, 0.05, 0.05) for i in ids)
+            store.add(BatchResult(i, *contents[i % 64], 1.0, 0.05, 0.05, np.full(3, 2e-5)) for i in ids)
 
 
 def summed(folder: Path, total: int) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import json
 import os
 import re
@@ -85,7 +86,7 @@ def write_output(output: str | Path, content: str | bytes, *sources: str | Path)
 def write_file(path: Path, content: str | bytes) -> Path:
     """Put `content` at `path` whole or not at all, making folders on the way; a fault is an `InvalidInputError`."""
     data = content if isinstance(content, bytes) else content.encode("utf-8")
-    beside = path.with_name(f".{path.name}.{os.getpid()}")
+    beside = path.with_name(f".{_short(path.name)}.{os.getpid()}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         try:
@@ -94,8 +95,27 @@ def write_file(path: Path, content: str | bytes) -> Path:
         finally:
             beside.unlink(missing_ok=True)
     except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
+        reason = _no_folder(path.parent) or getattr(error, "strerror", None) or error
         raise InvalidInputError(
             f"cannot write {path}: {reason}; choose a folder that can be written", str(path)
         ) from None
     return path
+
+
+_LONGEST = 200
+"""Bytes of a name that has room for more: most systems of files allow 255."""
+
+
+def _short(name: str) -> str:
+    """Return a name, or what stands for one that is long."""
+    raw = os.fsencode(name)
+    return name if len(raw) <= _LONGEST else hashlib.blake2b(raw, digest_size=16).hexdigest()
+
+
+def _no_folder(folder: Path) -> str:
+    """Return in words which part of a folder's path is no folder, "" if none is."""
+    with contextlib.suppress(OSError, ValueError):
+        for place in (folder, *folder.parents):
+            if place.exists():
+                return "" if place.is_dir() else f"{place} is a file, no folder"
+    return ""

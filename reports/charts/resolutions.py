@@ -82,8 +82,9 @@ class Resolutions:
             axes.points(at[:, 0], at[:, 1] if named else slope, *chosen[kind])
         axes.names(lines, np.arange(len(lines)))
         named_kinds = ", ".join(label(kind, 80) for kind in kinds)
+        least_and_most = " to ".join(dict.fromkeys(f"{end(values):.2g}" for end in (min, max)))
         return (
-            f"{len(rows)} passes: errors above {min(values):.2g} to {max(values):.2g} ({named_kinds}) would have shown, "
+            f"{len(rows)} passes: errors above {least_and_most} ({named_kinds}) would have shown, "
             f"relative to what they are errors of.{f' All names begin with {folder}' if folder else ''}"
             f"{f' {beyond} lie beyond the axis and are drawn at its end.' if beyond else ''}"
         )

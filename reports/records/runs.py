@@ -21,6 +21,7 @@ from fogproof.oracle_error import OracleError
 from fogproof.plan import Plan
 from fogproof.reports.charts.findings import parse_figure
 from fogproof.reports.files import write_file
+from fogproof.reports.records.figures import require_figures
 from fogproof.reports.validation import adapter
 from fogproof.text import spreadsheet_cell, unfinished
 from fogproof.verify import TwinResult, status_of
@@ -121,6 +122,10 @@ def parse_record(record: Any, origin: str = "record") -> RunRecord:
 
 def check_schema(record: Any, origin: str) -> None:
     """Raise `InvalidInputError` if this is not a record that this version reads."""
+    another = record.get("format") if isinstance(record, dict) else None
+    if isinstance(another, str) and another.startswith("fogproof"):
+        what = f"is a record of another kind ({shorten(another)}), whose page stands beside it"
+        raise InvalidInputError(f"{origin}: {what}; pages are made again for runs and studies alone", "format")
     if not isinstance(record, dict) or not isinstance(record.get("schema"), str):
         raise InvalidInputError(f"{origin}: is not the record of a run, it has no text key 'schema'", "schema")
     if record["schema"] != SCHEMA:
@@ -147,6 +152,8 @@ def validated(kind: type[T], record: Any, origin: str) -> T:
 def load_record(folder: str | Path) -> dict[str, Any]:
     """Return what stands in `folder/results.json`, or say in an `InvalidInputError` why that is nothing."""
     path = Path(folder) / RESULTS
+    if Path(folder).is_file():
+        raise InvalidInputError(f"{folder} is a file: give the folder that it lies in", str(folder))
     if not path.exists():
         there = "the folder has no" if Path(folder).is_dir() else f"there is no folder {folder} with a"
         make = f"'fogproof verify --report {folder}' or 'fogproof study STUDY.toml -o {folder}'"
@@ -159,6 +166,7 @@ def load_record(folder: str | Path) -> dict[str, Any]:
         reason = "it ends in the middle of a record" if ends else f"it is not JSON ({error})"
         raise InvalidInputError(f"cannot read {path}: {reason}; run the checks again", str(path)) from None
     check_schema(record, str(path))
+    require_figures(record, str(path))
     return cast(dict[str, Any], record)
 
 

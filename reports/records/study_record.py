@@ -66,12 +66,13 @@ class Count:
 
 @dataclass(frozen=True)
 class Timing:
-    """Processor seconds of one estimate with so many samples or steps."""
+    """Processor seconds of one estimate with so many samples or steps; `fixed_work`: over those of work that never changes."""
 
     count: int
     seconds: float
     low: float
     high: float
+    fixed_work: dict[str, Any] | None = None
 
 
 @dataclass(frozen=True)
@@ -168,13 +169,20 @@ class SceneRecord:
 
 
 @dataclass(frozen=True)
+class TimeChange(EstimateRecord):
+    """A ratio of times; a change by the factor `resolution` would have been said."""
+
+    resolution: float | None = None
+
+
+@dataclass(frozen=True)
 class Change:
     """What became of an estimator since an earlier run; time and variance are ratios after / before."""
 
     scene: str
     estimator: str
     became: tuple[str, ...]
-    time: EstimateRecord | None = None
+    time: TimeChange | None = None
     variance: EstimateRecord | None = None
 
 
@@ -191,6 +199,7 @@ class History:
     changes: tuple[Change, ...]
     gone: tuple[str, ...] = ()
     new: tuple[str, ...] = ()
+    against: Literal["fixed-work", "each-other", "nothing"] = "each-other"
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,7 +24,8 @@ from typing import IO, Any
 
 WORDS = "FOGPROOF_CHILD"  # the words of all who started a program, from the outermost to the program's own
 _LOOKS = 8  # looks for processes that were started while others were killed
-_LAST = 5.0  # seconds for the watcher to end after us
+_LAST = 5.0  # seconds for the watcher to end after us, and for what a program wrote to be read after it
+_KEPT = 1 << 16  # bytes of the end of stderr
 
 
 @dataclass(frozen=True)
@@ -66,18 +68,26 @@ def remove_after(folder: str) -> None:
 
 
 def run(words: Sequence[str], seconds: float | None = None) -> subprocess.CompletedProcess[str]:
-    """Run a program to its end, at most so many seconds (subprocess.TimeoutExpired); nothing that it started stays behind."""
-    child = start(
-        words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace"
-    )
+    """Run a program to its end, at most so many seconds (subprocess.TimeoutExpired); nothing that it started stays behind.
+
+    Of what it writes to stderr the end is kept, of the rest nothing: it may be more than there is memory.
+    """
+    child = start(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, bufsize=0)
+    last: list[bytes] = [b""]
+    reader = threading.Thread(target=_keep_end, args=(child.popen.stderr, last), daemon=True)
+    reader.start()
     try:
-        out, said = child.popen.communicate(timeout=seconds)
-        return subprocess.CompletedProcess(list(words), child.popen.returncode, out, said)
+        code = child.popen.wait(seconds)
     finally:
         child.kill()
-        for stream in (child.popen.stdout, child.popen.stderr):
-            if stream is not None:
-                stream.close()
+        reader.join(_LAST)
+    return subprocess.CompletedProcess(list(words), code, "", last[0].decode("utf-8", "replace"))
+
+
+def _keep_end(stream: IO[bytes], last: list[bytes]) -> None:
+    with stream:
+        while data := stream.read(_KEPT):
+            last[0] = (last[0] + data)[-_KEPT:]
 
 
 def end_all(groups: Iterable[int], words: Iterable[str]) -> None:

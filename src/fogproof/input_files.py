@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import stat
+import tomllib
 from io import BufferedReader
 from pathlib import Path
 from typing import Any
@@ -61,6 +62,28 @@ def size_of(file: BufferedReader) -> int:
 def parse_json(text: str) -> Any:
     """Return the value of a JSON text; a ValueError (or RecursionError) where it is none, or has a key twice in one table."""
     return json.loads(text, object_pairs_hook=_unique)
+
+
+def parse_toml(text: str) -> dict[str, Any]:
+    """Return the table of a TOML text; a ValueError (or RecursionError) where it is none, or has an integer beyond all numbers."""
+    try:
+        table = tomllib.loads(text)
+    except tomllib.TOMLDecodeError:
+        raise
+    except ValueError:  # Python's bound on digits, whose words are for programmers
+        raise ValueError(_DIGITS) from None
+    _require_numbers(table)
+    return table
+
+
+_DIGITS = "an integer has too many digits; write it as a float, 1e300"
+
+
+def _require_numbers(value: Any) -> None:
+    for item in value.values() if isinstance(value, dict) else value if isinstance(value, list) else ():
+        _require_numbers(item)
+    if isinstance(value, int) and value.bit_length() > 1023:
+        raise ValueError(_DIGITS)
 
 
 def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

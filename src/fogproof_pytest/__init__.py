@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import math
 import secrets
+from collections import deque
 from collections.abc import Generator, Iterator
 from pathlib import Path
 from typing import Any
@@ -22,7 +23,9 @@ ALPHA = 1e-6
 """False-alarm probability of a session, unless told otherwise."""
 
 _SEED, _ALPHA, _WEIGHTS = pytest.StashKey[int](), pytest.StashKey[float](), pytest.StashKey[float]()
-_VERDICTS, _TOLD = pytest.StashKey[list[dict[str, Any]]](), pytest.StashKey[int]()
+_NEWS, _LATE = pytest.StashKey[deque[tuple[Any, ...]]](), pytest.StashKey[list[Any]]()
+"""What checks have found and no report has told yet; and what came after the last report. See `checks`."""
+_FAILED, _NOTHING = 1, 5  # pytest.ExitCode
 _MARKER = (
     "fogproof(weight=1, calls=None, inconclusive='fail'): this test's share of the session's false-alarm probability relative to "
     "other tests; how many checks share it equally (None: the k-th gets 1/(k (k + 1)) of it); whether an inconclusive verdict "
@@ -55,6 +58,7 @@ def pytest_configure(config: pytest.Config) -> None:
     told = getattr(config, "workerinput", {}).get("fogproof_seed")
     config.stash[_SEED] = told if told is not None else secrets.randbits(62) if seed is None else seed
     config.stash[_ALPHA] = alpha
+    config.stash[_NEWS], config.stash[_LATE] = deque(), []
     folder = config.getoption("--fogproof-report")
     if folder == "":
         raise pytest.UsageError("--fogproof-report must name a folder, got '': is a variable of the shell not set?")
@@ -113,7 +117,7 @@ def _marked(item: pytest.Item) -> dict[str, Any]:
 
 
 @pytest.fixture
-def fogproof(request: pytest.FixtureRequest) -> Any:
+def fogproof(request: pytest.FixtureRequest) -> Iterator[Any]:
     """The checks of fogproof inside the session's false-alarm probability, and everything else that `fogproof` has."""
     from fogproof_pytest.checks import Checks
 
@@ -123,44 +127,82 @@ def fogproof(request: pytest.FixtureRequest) -> Any:
         pytest.fail(f"the false-alarm probability was shared out without {item.name}: {fix}", pytrace=False)
     said = _marked(item)
     share = config.stash[_ALPHA] * said.get("weight", 1.0) / config.stash[_WEIGHTS]
-    verdicts = item.stash.setdefault(_VERDICTS, [])
-    verdicts.clear()  # a test that is run again says the same again
-    item.stash[_TOLD] = 0
     passes = said.get("inconclusive", "fail") == "pass"
-    return Checks(item.nodeid, share, config.stash[_SEED], said.get("calls"), passes, verdicts)
+    checks = Checks(item.nodeid, share, config.stash[_SEED], said.get("calls"), passes, config.stash[_NEWS])
+    yield checks
+    if running := checks._end():
+        pytest.fail(
+            f"{running} still runs where {item.name} ends: join the thread that it was called in", pytrace=False
+        )
+
+
+def _drained(news: deque[tuple[Any, ...]]) -> list[tuple[Any, ...]]:
+    found = []
+    while news:
+        found.append(news.popleft())
+    return found
 
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) -> Generator[None, Any, Any]:
     """Attach the new verdicts to the report, as plain data that xdist can send, and in a word to junit.
 
-    Those of a fixture are in the report of the setup or of the teardown.
+    Those of a fixture are in the report of the setup or of the teardown. What was rejected fails the test, whoever has caught the
+    exception: a thread, whose exceptions end nothing but itself, or an `except`.
     """
     report = yield
-    first = item.stash.get(_TOLD, 0)
-    if verdicts := item.stash.get(_VERDICTS, [])[first:]:
-        item.stash[_TOLD] = first + len(verdicts)
-        report.fogproof = [(first + k, verdict) for k, verdict in enumerate(verdicts)]
-        words = "; ".join(f"{v['check']}: {v['outcome']}, alpha {v['alpha']:.2g}" for v in verdicts)
-        item.user_properties.append(("fogproof", words))
+    if found := _drained(item.config.stash[_NEWS]):
+        report.fogproof = found
+        own = [verdict for test, _, verdict, _ in found if test == item.nodeid and verdict]
+        if own:
+            words = "; ".join(f"{v['check']}: {v['outcome']}, alpha {v['alpha']:.2g}" for v in own)
+            item.user_properties.append(("fogproof", words))
+        lost = [why for *_, why in found if why]
+        if lost and report.passed and not hasattr(report, "wasxfail"):
+            fix = "if that is what you expect, call the package itself (import fogproof), and look at the verdict"
+            report.outcome = "failed"
+            report.longrepr = f"{'; '.join(lost)}, though the exception has not ended the test; {fix}"
     return report
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node: Any) -> None:
+    """Hear what came after the last report of a worker of xdist."""
+    node.config.stash[_LATE] += getattr(node, "workeroutput", {}).get("fogproof", [])
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    """Fail the session for what came after the last report, which could fail nothing else."""
+    config = session.config
+    late = config.stash[_LATE]
+    late += _drained(config.stash[_NEWS])
+    if hasattr(config, "workeroutput"):
+        config.workeroutput["fogproof"] = late
+    if session.exitstatus in (0, _NOTHING) and any(why for *_, why in late):
+        session.exitstatus = _FAILED
 
 
 def pytest_terminal_summary(terminalreporter: Any, exitstatus: int, config: pytest.Config) -> None:
     """Say what was judged, what of the false-alarm probability was spent, and what could not have been missed."""
-    told = {}
-    for reports in terminalreporter.stats.values():
-        for report in reports:
-            for number, verdict in getattr(report, "fogproof", ()):
-                told[report.nodeid, number] = verdict
+    late, told = config.stash[_LATE], {}
+    reports = [report for reports in terminalreporter.stats.values() for report in reports]
+    for test, number, verdict, _ in [*(one for each in reports for one in getattr(each, "fogproof", ())), *late]:
+        if verdict:
+            told[test, number] = verdict
     folder = config.getoption("--fogproof-report")
-    if not told and not folder:
+    lost = [why for *_, why in late if why]
+    if not told and not folder and not lost:
         return
     from fogproof_pytest.summary import summary, written
 
     terminalreporter.section("fogproof")
     for line in summary(told, config.stash[_ALPHA], config.stash[_SEED]):
         terminalreporter.write_line(line)
+    if lost:
+        terminalreporter.write_line(
+            f"after the last test had been reported, so that the session fails: {'; '.join(lost)}"
+        )
+        exitstatus = exitstatus or _FAILED
     if folder:
         settings = (config.stash[_SEED], config.stash[_ALPHA], int(exitstatus), " ".join(config.invocation_params.args))
         terminalreporter.write_line(f"report: {written(told, folder, *settings)}")

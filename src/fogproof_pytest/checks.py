@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import itertools
+from collections import deque
 from collections.abc import Callable
 from typing import Any
 
@@ -18,22 +19,44 @@ class Checks:
 
     share     the test's share of the false-alarm probability
     calls     how many checks share it equally; None: the k-th gets 1 / (k (k + 1)) of it, which adds up to at most all of it
-    verdicts  told of every verdict, in plain data
+    news      told of every verdict: (test, its number, plain data, why it fails the test or "")
     """
 
     def __init__(
-        self, test: str, share: float, seed: int, calls: int | None, passes: bool, verdicts: list[dict[str, Any]]
+        self, test: str, share: float, seed: int, calls: int | None, passes: bool, news: deque[tuple[Any, ...]]
     ) -> None:
         self._test, self._share, self._seed = test, share, seed
-        self._calls, self._passes, self._verdicts = calls, passes, verdicts
-        self._count = itertools.count(1)
+        self._calls, self._passes, self._news = calls, passes, news
+        self._count, self._number, self._running = itertools.count(1), itertools.count(), list[str]()
+        self._ended = False
+
+    def _end(self) -> str:
+        """Take no more checks: the test has ended. Return what still runs, "" if nothing does."""
+        self._ended = True
+        return ", ".join(self._running)
 
     def __getattr__(self, name: str) -> Any:
-        thing = getattr(fogproof, name)
+        self._running.append(name)  # the first use of a check loads much
+        try:
+            thing = getattr(fogproof, name)
+        finally:
+            self._running.remove(name)
         return self._checking(name, thing) if name.startswith(("check_", "compare_")) else thing
 
     def _checking(self, name: str, check: Callable[..., Any]) -> Callable[..., Any]:
         def checked(*arguments: Any, **options: Any) -> Any:
+            __tracebackhide__ = True
+            if self._ended:
+                why = f"{name} was called by the fixture of {self._test}, which had ended: it was not judged"
+                self._news.append((self._test, next(self._number), None, why))
+                raise InvalidValueError("fogproof", why, name, "ask for the fixture in the test that uses it")
+            self._running.append(name)
+            try:
+                return checked_now(*arguments, **options)
+            finally:
+                self._running.remove(name)
+
+        def checked_now(*arguments: Any, **options: Any) -> Any:
             __tracebackhide__ = True
             number = next(self._count)
             if "alpha" in options:
@@ -46,19 +69,25 @@ class Checks:
                 options.setdefault("seed", self._seed_of(number))
             found = check(*arguments, **options)
             if isinstance(found, Verdict):
-                self._verdicts.append({"check": name, **found.to_dict()})
+                self._tell(name, found)
                 self._raise(found)
                 return found
             if isinstance(getattr(found, "verdict", None), Verdict):  # an image, and what its verdict rests on
-                self._verdicts.append({"check": name, **found.verdict.to_dict()})
+                self._tell(name, found.verdict)
                 self._raise(found.verdict)
                 return found
-            self._verdicts += [{"check": f"{name} of {one.name}", **one.verdict.to_dict()} for one in found]
+            for one in found:
+                self._tell(f"{name} of {one.name}", one.verdict)
             for relation in sorted(found, key=lambda one: one.verdict.outcome != "rejected"):
                 self._raise(relation.verdict, f"{relation}\n")
             return found
 
         return checked
+
+    def _tell(self, name: str, verdict: Verdict) -> None:
+        fails = verdict.outcome == "rejected" or (verdict.outcome == "inconclusive" and not self._passes)
+        told = {"check": name, **verdict.to_dict()}
+        self._news.append((self._test, next(self._number), told, f"{name}: {verdict.outcome}" if fails else ""))
 
     def _raise(self, verdict: Verdict, about: str = "") -> None:
         """Raise for a verdict that fails the test; `about` says first what it is about."""

@@ -83,6 +83,30 @@ def test_black_pixels_have_the_closed_forms():
     assert extremes_p(bright, 0.3, 0.3, Known()) == 1.0
 
 
+def test_bounds_and_a_variance_together_pay_for_each_of_their_inequalities():
+    """Hoeffding's with Kullback and Leibler's divergence, Bennett's, the extremes: two sides each, the smallest of all decides."""
+    n, hits, m = 50, 30, 0.3
+    x = Moments.of(np.where(np.arange(n) < hits, 1.0, 0.0))
+    hoeffding = (m / 0.6) ** hits * ((1 - m) / 0.4) ** (n - hits)
+    bennett = (math.e / 4) ** (n * 0.21 / 0.7**2)  # u = 0.7 x 0.3 / 0.21 = 1, h(1) = 2 log 2 - 1
+    assert extremes_p(x, m, m, Known(low=0.0, high=1.0)) == pytest.approx(4 * hoeffding, rel=1e-9)
+    both = extremes_p(x, m, m, Known(variance=0.21, low=0.0, high=1.0))
+    assert both == pytest.approx(8 * min(hoeffding, bennett), rel=1e-9)
+    rare = Moments.of(np.where(np.arange(1000) < 30, 1.0, 0.0))  # here Bennett's is the smaller one
+    u = 0.99 * 0.02 / 1e-3
+    bennett = math.exp(-1000 * 1e-3 / 0.99**2 * ((1 + u) * math.log(1 + u) - u))
+    assert extremes_p(rare, 0.01, 0.01, Known(variance=1e-3, low=0.0, high=1.0)) == pytest.approx(8 * bennett, rel=1e-9)
+
+
+def test_a_claim_known_to_within_an_error_is_not_bet_against_inside_it():
+    """The mean lies at either end of the claim, 50 standard errors from its middle."""
+    n, rng = 10_000, np.random.default_rng()
+    for end in (-0.5, 0.5):
+        x = rng.normal(end, 1, n)
+        assert Bets(-0.5, 0.5, Known(variance=1.0), n, 1e-3).after(x).p_value > 1e-3
+        assert Bets(-0.5, 0.5, Known(variance=1.0), n, 1e-3).after(x + 0.2 * np.sign(end)).p_value < 1e-6
+
+
 def test_bounds_resolve_what_they_say():
     known, n, rng = Known(low=0.0, high=1.0), 2000, np.random.default_rng()
     reach = detectable(n, known, 1e-4, 0.01)

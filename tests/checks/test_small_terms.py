@@ -10,7 +10,7 @@ from fogproof.checks import check_convergence, samples_for
 from fogproof.checks.density import quadrature
 from fogproof.checks.diagnosis.hypothesis import Hypothesis
 from fogproof.checks.judgement import share_of_means
-from fogproof.checks.statistics.labels import _chi_square
+from fogproof.checks.statistics.labels import _chi_square, tail
 
 
 def test_quadrature_is_exact_for_the_polynomials_it_is_made_for():
@@ -58,3 +58,12 @@ def test_chi_square_of_sums_of_unlike_coins(coins):
         total = ((rng.random(p.shape) < p) - p).sum(axis=1)
         found.append(_chi_square("sums", np.stack([total, *columns]), 1e-9).p_value)
     assert stats.kstest(found, "uniform").pvalue > 1e-6
+
+
+def test_a_sum_of_few_coins_has_bennetts_bound_on_either_side():
+    """Bennett 1962: exp(-v h(t / v)), h(u) = (1 + u) log(1 + u) - u, twice; many coins have the normal law's tail."""
+    total, variance = np.array([3.0, -3.0, 20.0]), np.array([2.0, 2.0, 10.0])
+    h = (1 + 1.5) * math.log(2.5) - 1.5, (1 + 2.0) * math.log(3.0) - 2.0
+    expected = [2 * math.exp(-2 * h[0])] * 2 + [2 * math.exp(-10 * h[1])]
+    assert tail(total, variance, np.zeros(3)) == pytest.approx(expected, rel=1e-12)
+    assert tail(np.array([50.0]), np.array([400.0]), np.zeros(1)) == pytest.approx(2 * stats.norm.sf(2.5), rel=1e-12)

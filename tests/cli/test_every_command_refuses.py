@@ -86,6 +86,17 @@ def two_bytes_a_letter(path: Path) -> None:
 KINDS: list[Callable[[Path], None]] = [missing, a_folder, empty, noise, zeros, two_bytes_a_letter]
 
 
+STUDY = """
+samples = [64]
+[[scenes]]
+name = "haze"
+quantity = "transmittance"
+medium = { sigma_a = 0.1, sigma_s = 0.1 }
+ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 1 }
+estimators = ["ratio"]
+"""
+
+
 @pytest.fixture
 def filled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[list[str]], list[str]]:
     """Return what puts real files in the place of names in braces."""
@@ -95,7 +106,7 @@ def filled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[list[st
     np.save(tmp_path / "image.npy", np.ones((4, 4, 3)))
     np.save(tmp_path / "samples.npy", np.ones((100, 1)))
     (tmp_path / "spec.toml").write_text(SPEC)
-    (tmp_path / "study.toml").write_text('title = "a"\nmethods = ["ratio-tracking"]\n')
+    (tmp_path / "study.toml").write_text(STUDY)
     (tmp_path / "taken").write_text("somebody's")
     (tmp_path / "run").mkdir()
     names = {"scene": SCENE, "image": "image.npy", "npy": "samples.npy", "spec": "spec.toml", "study": "study.toml"}
@@ -138,6 +149,17 @@ def test_what_cannot_be_read(
         bad.rmdir() if kind is a_folder else bad.unlink(missing_ok=True)
 
 
+@pytest.mark.parametrize("command", [name for name, calls in READS.items() if calls and name not in ("verify", "list")])
+def test_an_input_without_a_name(filled: Callable[[list[str]], list[str]], command: str) -> None:
+    """Neither is one the folder one stands in, nor None."""
+    for call in READS[command]:
+        words = ["" if word.startswith("{bad}") else word for word in call]
+        end = here(Run([command, *filled(words)]))
+        refused(end)
+        assert b"is empty: name a file or folder" in end.err
+        assert not Path("out").exists()
+
+
 @pytest.mark.parametrize("command", WRITES)
 def test_what_cannot_be_written(filled: Callable[[list[str]], list[str]], command: str) -> None:
     refused(here(Run([command, *filled(WRITES[command])])))
@@ -163,7 +185,7 @@ def test_an_output_that_is_no_folder_is_said_to_be_none(filled: Callable[[list[s
     assert b"link is a link that leads nowhere" in here(Run([command, *words[:-1], "link"])).err
 
 
-@pytest.mark.parametrize("command", ["verify", "compare", "stability", "gallery"])
+@pytest.mark.parametrize("command", ["verify", "compare", "stability", "gallery", "study"])
 def test_a_folder_into_which_another_run_writes(filled: Callable[[list[str]], list[str]], command: str) -> None:
     fcntl = pytest.importorskip("fcntl")
     Path("busy").mkdir()
@@ -173,3 +195,14 @@ def test_a_folder_into_which_another_run_writes(filled: Callable[[list[str]], li
     os.close(other)
     assert (end.code, b"another run of fogproof writes into busy" in end.err) == (2, True), end.err
     assert not [*Path("busy").iterdir()]
+
+
+@pytest.mark.parametrize("digits", ["9" * 5000, "0x" + "f" * 5000], ids=["decimal", "hexadecimal"])
+@pytest.mark.parametrize("command", ["plan", "study", "check", "export", "oracle"])
+def test_an_integer_beyond_all_numbers(filled: Callable[[list[str]], list[str]], command: str, digits: str) -> None:
+    """Python refuses to read one, and to print another, in words for programmers."""
+    words = filled(next(call for call in READS[command][::-1] if "{bad}.toml" in call))
+    Path("bad.toml").write_text(f"seed = {digits}\nray = [{digits}]\n")
+    end = here(Run([command, *words]))
+    refused(end)
+    assert b"an integer has too many digits" in end.err

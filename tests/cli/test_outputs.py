@@ -20,7 +20,7 @@ from fogproof.errors import InvalidInputError
 from fogproof.images.formats import format_of
 from fogproof.journal import add_line, whole_lines
 from fogproof.oracle import Limits, serve
-from fogproof.reports.files import write_output
+from fogproof.reports.files import write_file, write_output
 from fogproof.zoo.running import ZooLog
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -47,6 +47,35 @@ def test_what_is_read_is_not_written_over(tmp_path, monkeypatch, text, words):
     assert (end.code, b"same.npy is the file that is read" in end.err) == (2, True)
     assert Path("in.toml").read_text() == text
     assert here(Run([*words, "other.npy"])).code == 0
+
+
+@pytest.mark.parametrize(
+    "words", [["golden", "phase_pdf"], ["export", "in.toml", "--to", "json"]], ids=lambda words: words[0]
+)
+def test_a_dash_is_stdout_and_a_name_of_a_folder_no_file(tmp_path, monkeypatch, words):
+    monkeypatch.chdir(tmp_path)
+    Path("in.toml").write_text(SUN)
+    assert here(Run([*words, "-o", "-"])).out == here(Run(words)).out != b""
+    end = here(Run([*words, "-o", "new/"]))
+    assert (end.code, b"new/ is the name of a folder; add that of a file" in end.err) == (2, True)
+    assert os.listdir() == ["in.toml"]
+
+
+def test_an_image_does_not_go_to_stdout(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("in.toml").write_text(SUN)
+    end = here(Run(["oracle", "in.toml", "-o", "-"]))
+    assert (end.code, b"an image does not go to stdout" in end.err) == (2, True)
+    assert os.listdir() == ["in.toml"]
+
+
+def test_any_name_that_a_system_of_files_takes_can_be_written(tmp_path):
+    for length in (4, 100, 201, 255):
+        path = write_file(tmp_path / ("n" * length), "told")
+        assert path.read_text() == "told"
+    assert len(os.listdir(tmp_path)) == 4
+    with pytest.raises(InvalidInputError, match=f"{'n' * 4}/x: .*{'n' * 4} is a file, no folder"):
+        write_file(tmp_path / "nnnn" / "x", "")
 
 
 @POSIX

@@ -218,3 +218,19 @@ def test_a_name_and_a_file_have_bounds(tmp_path, monkeypatch):
     monkeypatch.setattr(own, "TEXT", 0)
     with pytest.raises(InvalidInputError, match="1 bytes; a file of cases has at most 0"):
         own.own_cases(str(tmp_path / "mine.py"))
+
+
+LOOPS = {
+    "import": "while True: pass",
+    "cases": "def cases():\n    while True: pass",
+    "end": "import os; os.kill(os.getpid(), 9)",
+}
+
+
+@pytest.mark.parametrize("where", LOOPS)
+def test_a_time_limit_bounds_the_listing_of_cases(tmp_path, where):
+    """Nor does what ends its process then end ours, which no guard in it could see."""
+    path = written(tmp_path, LOOPS[where])
+    end = here(Run(["verify", path, "--time-limit", "0.3"]))
+    words = "ended the process, exit code -9" if where == "end" else "did not return within 0.3 s"
+    assert (end.code, f"its cases cannot be listed: the subject {words}" in end.err.decode()) == (2, True), end.err

@@ -85,7 +85,9 @@ def test_a_study_stopped_after_few_replicates_is_judged(replicates):
         ]
     )
     exact = Reference(np.float64(1.0), np.float64(0.0), "", "")
-    level = Level(100, rows, 48, rows[0], np.zeros(0), float("nan"), np.zeros(0), float("nan"), replicates, 0.0)
+    level = Level(
+        100, rows, 48, rows[0], np.zeros(0), float("nan"), np.zeros(0), float("nan"), replicates, 0.0, np.empty((0, 4))
+    )
     checks = [finding.check for finding in _against_theory([level], exact, 1e-6)]
     assert checks == ["variance", "scatter of replicates"][:replicates]
 

@@ -199,3 +199,19 @@ def test_fog_of_opengl_is_tracked(mode) -> None:
     fog, ray = OpenGLFog(mode, 0.8, 0.2, 2.0), Ray((0, 0, 0), unit(1, 2, 3), 1.1)
     ratio = RatioTransmittance(fog, ray)
     check_estimator(ratio.draw, transmittance(fog, ray), samples=200_000).raise_unless_passed()
+
+
+@pytest.mark.parametrize("tracker", [DeltaTransmittance, RatioTransmittance])
+@pytest.mark.parametrize("compiled", [True, False], ids=["kernel", "arrays"])
+def test_a_majorant_that_is_barely_too_small_is_refused_where_it_is_met(tracker, compiled) -> None:
+    """A band too thin for a first look is denser than the bound, by less than anybody would see in a mean."""
+    excess = 1e-4
+
+    def banded(x: np.ndarray) -> np.ndarray:
+        return np.where(np.abs(x[..., 2] - 0.5) < 0.005, 1.0 + excess, 1.0)
+
+    field = CompiledField(numba.njit(lambda x, y, z: 1.0 + excess * (abs(z - 0.5) < 0.005))) if compiled else banded
+    ray, generator = Ray((0, 0, 0), (0, 0, 1), 1.0), np.random.default_rng(1)
+    tracker(Procedural(field, 1.0 + excess), ray).draw(generator, 20_000)
+    with pytest.raises(InvalidValueError, match=r"must bound sigma_t = 1\.0001 .*met at t = 0\.(49|50)"):
+        tracker(Procedural(field, 1.0), ray).draw(generator, 20_000)

@@ -14,9 +14,10 @@ from fogproof.analytic import image
 from fogproof.checks import fresh_seed
 from fogproof.cli.commands import cli
 from fogproof.errors import FogproofError
-from fogproof.images.compare import compare_image
+from fogproof.images.compare import compare_image, compare_renders
 from fogproof.images.formats import format_of, layers
 from fogproof.images.pairs import compare_pictures
+from fogproof.images.picture import RenderedImage, read_picture
 from fogproof.reports import prepare_folder
 from fogproof.scene.files import read_image_scene
 from fogproof.scene.lights import DirectionalLight
@@ -232,6 +233,51 @@ def test_renders_that_are_all_the_same_have_no_noise(compared, truth):
     verdict = compared([off, off], explain=False).verdict
     assert verdict.outcome == "rejected"
     assert "most at row 7, column 9" in str(verdict)
+
+
+def test_equal_renders_with_noise_are_no_independent_renders(compared, truth, rng):
+    """Two copies of one noisy right image scatter not at all: as renders of a seed each they would be certain to be wrong."""
+    one, other = noisy(truth.value, rng), noisy(truth.value, rng)
+    for renders in ([one, one], [one, other, one]):
+        with pytest.raises(FogproofError, match=rf"a0.exr and \S*a{len(renders) - 1}.exr are the same pixel by pixel"):
+            compared(renders)
+    picture = RenderedImage(
+        np.stack([one, one])[..., None], None, (1e-8, 1e-45), ("Y",), ()
+    )  # of a program, without files
+    verdict = compare_renders(picture, SCENE, reference=truth).verdict
+    assert verdict.outcome != "rejected"
+    assert any("they count as one" in note for note in verdict.unchecked)
+    wrong = replace(picture, renders=1.5 * picture.renders)
+    assert compare_renders(wrong, SCENE, reference=truth, explain=False).verdict.outcome == "rejected"
+
+
+def test_what_of_a_file_is_not_looked_at_is_said(tmp_path, compared, truth, rng):
+    done = compared(noisy(truth.value, rng), variance=np.where(np.arange(64) < 60, 1.0, np.nan) * np.ones((48, 1)))
+    assert done.picture.variance is None
+    assert "192 values of its variance layers are negative or NaN: they are not used" in str(done.verdict)
+    format_of("a.npy").write(tmp_path / "a.npy", {f"C{i}": noisy(truth.value, rng) for i in range(5)})
+    verdict = compare_image([tmp_path / "a.npy"], SCENE, reference=truth).verdict
+    assert "channels that are not looked at: C3, C4" in verdict.unchecked
+    format_of("a.exr").write(tmp_path / "a.exr", {"foo": truth.value})
+    with pytest.raises(FogproofError, match=r"has channels foo; an image has Y, or R, G and B"):
+        compare_image([tmp_path / "a.exr"], SCENE, reference=truth)
+
+
+def test_channels_are_taken_by_their_number(tmp_path):
+    bands = {f"C{i}": np.full((4, 4), float(i), np.float32) for i in range(12)}
+    for suffix in ("npy", "exr"):
+        format_of(f"a.{suffix}").write(tmp_path / f"a.{suffix}", bands)
+        assert read_picture([tmp_path / f"a.{suffix}"], None, 12).value[0, 0].tolist() == list(range(12))
+
+
+@pytest.mark.parametrize(
+    ("size", "words"), [(1e36, "is the file's order of bytes right"), (1e300, "count as infinite")]
+)
+def test_numbers_that_no_radiance_has_are_told_without_a_warning(compared, truth, rng, size, words, recwarn):
+    value = noisy(truth.value, rng)
+    value[3, 5] = size
+    assert words in str(compared(value, dtype=np.float64, suffix="npy", explain=False).verdict)
+    assert not recwarn.list
 
 
 def test_pixels_that_share_random_numbers_are_recognised(compared, truth, rng):

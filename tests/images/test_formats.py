@@ -42,6 +42,28 @@ def test_half_stays_half(tmp_path):
     assert format_of(path).read(path)["Y"].dtype == np.float16
 
 
+@pytest.mark.parametrize("tiles", [False, True])
+@pytest.mark.parametrize("parts", [1, 3])
+def test_bytes_after_an_exr_are_found(tmp_path, tiles, parts):
+    import OpenEXR
+
+    path = tmp_path / "a.exr"
+    header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.tiledimage if tiles else OpenEXR.scanlineimage}
+    if tiles:
+        header["tiles"] = OpenEXR.TileDescription()
+    made = [
+        OpenEXR.Part({**header, "name": f"part{k}"}, {"RGB"[k]: np.full((70, 90), float(k), np.float32)}, f"part{k}")
+        for k in range(parts)
+    ]
+    OpenEXR.File(made).write(str(path))
+    whole = path.read_bytes()
+    assert list(format_of(path).read(path)) == list("RGB"[:parts])
+    for more in (b"\0", whole):
+        path.write_bytes(whole + more)
+        with pytest.raises(InvalidInputError, match=f"{len(more)} bytes follow the image, which nothing reads"):
+            format_of(path).read(path)
+
+
 def bad_files():
     class Evil:
         def __reduce__(self):
@@ -57,6 +79,7 @@ def bad_files():
     yield "lies.pfm", b"PF\n99999 99999\n-1\n" + b"\0" * 12, "claims 99999 x 99999"
     yield "short.pfm", b"PF\n2 2\n-1\n" + b"\0" * 12, "truncated"
     yield "scale.pfm", b"Pf\n1 1\n0\n" + b"\0" * 4, "scale"
+    yield "units.pfm", b"Pf\n1 1\n-2.0\n" + b"\0" * 4, "scale is -2, which some readers apply"
     yield "text.pfm", b"P6\n2 2\n255\n", "does not begin like a PFM"
     yield "text.exr", b"hello", "does not begin like an OpenEXR"
     yield "short.exr", b"\x76\x2f\x31\x01" + b"\2\0\0\0", "broken or truncated"

@@ -6,6 +6,7 @@ import json
 import math
 import subprocess
 import sys
+import tracemalloc
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,7 @@ from click.testing import CliRunner
 
 from fogproof import Environment, Film, HenyeyGreenstein, ImageScene, Medium, OneRay, Perspective, PointLight
 from fogproof.analytic import image
+from fogproof.children import run as run_program
 from fogproof.cli.commands import cli
 from fogproof.errors import FogproofError
 from fogproof.images.formats import format_of
@@ -169,3 +171,18 @@ def test_a_single_ray_of_mitsuba_is_judged_right(tmp_path):
     assert done.verdict.outcome == "not rejected", str(done.verdict)
     assert math.isclose(done.ratios[0][1], 1, abs_tol=0.2)
     assert image(scene).value.shape == (24, 24)
+
+
+def test_what_a_renderer_writes_takes_no_memory():
+    """Nor does a process that it leaves behind keep us waiting for the end of its output."""
+    flood = "import os, sys; [(os.write(1, b'y' * 65536), os.write(2, b'z' * 65536)) for _ in range(400)]; "
+    leave = "os.fork() or __import__('time').sleep(100); sys.exit('last words')"
+    tracemalloc.start()
+    try:
+        ended = run_program([sys.executable, "-S", "-c", flood + leave], 20)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert (ended.returncode, ended.stdout, ended.stderr[-11:]) == (1, "", "last words\n")
+    assert len(ended.stderr) <= 65536
+    assert peak < 3e6

@@ -192,6 +192,8 @@ def test_equal_questions_become_one_call(monkeypatch):
 def test_lines_in_pieces_blank_lines_and_a_byte_order_mark():
     text = b"\xef\xbb\xbf" + json.dumps(SKY).encode() + b"\r\n\n   \n" + json.dumps(SKY).encode()
     assert len(converse(text, chunk=7, end=b"")) == 2
+    joined = converse(text + b"\n" + text, chunk=1, end=b"")
+    assert codes(joined) == [None] * 4
     assert converse(b"", end=b"") == []
 
 

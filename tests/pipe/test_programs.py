@@ -73,7 +73,7 @@ HOSTILE = {
     "garbage": ("out.write(os.urandom(64) + b'\\n')", "broken protocol", "the line before its rows"),
     "text in between": ("print('sample', answered, flush=True)", "broken protocol", "'sample 1'"),
     "an error of its own": ('out.write(b\'{"error": "sigma_t is 0"}\\n\')', "reports an error", "says: sigma_t is 0"),
-    "big-endian": ("x.byteswap()", "byte order", "big-endian"),
+    "big-endian": ("x.byteswap()", "byte order", "writes big-endian"),
     "not a number": ("x = array.array('d', [math.nan] * n)", "outside the domain", "nan is not a point"),
     "closes its output": ("sys.stdout.flush(); os.close(1); time.sleep(100)", "dies", "closed its output and runs on"),
     "floods": (
@@ -86,6 +86,21 @@ HOSTILE = {
 }
 
 
+@pytest.mark.parametrize(
+    ("answer", "told"), [("x.byteswap()", "reads and writes big-endian"), ("pass", "reads big-endian")]
+)
+@pytest.mark.parametrize("odd", ["math.nan", "[][0]"], ids=["goes on", "dies of nonsense"])
+def test_who_reads_big_endian_numbers_is_told(tmp_path, answer, told, odd):
+    right = "[-math.log1p(-u) for u in rows]"
+    careful = f"[-math.log1p(-u) if 0 <= u < 1 else {odd} for u in (rows.byteswap() or rows)]"
+    verdict = judged(program(tmp_path, answer, source=SAMPLER.replace(right, careful))).verdict
+    if odd == "math.nan":
+        assert verdict.cause == "byte order", verdict
+        assert told in str(verdict)
+    else:
+        assert verdict.cause == "dies", verdict
+
+
 @pytest.mark.parametrize("name", HOSTILE)
 def test_what_a_program_does_wrong_is_said(tmp_path, name):
     answer, cause, *words = HOSTILE[name]
@@ -95,6 +110,14 @@ def test_what_a_program_does_wrong_is_said(tmp_path, name):
     assert outcome.verdict.cause == cause, outcome.verdict
     for word in words:
         assert word in str(outcome.verdict)
+
+
+@pytest.mark.parametrize(("more", "words"), [("goodbye!", "wrote 8 bytes more than it was asked for: 'goodbye!'"),
+                                             ('{"n": 3}', "answered once more than it was asked")])  # fmt: skip
+def test_what_comes_after_the_last_answer_is_too_much(tmp_path, more, words):
+    outcome = judged(program(tmp_path, source=f"{SAMPLER}out.write(b'{more}')\n"))
+    assert (outcome.verdict.outcome, outcome.verdict.cause) == ("rejected", "broken protocol")
+    assert words in str(outcome.verdict)
 
 
 GREETINGS = {
@@ -186,16 +209,8 @@ def test_a_program_that_ends_in_failure_does_not_pass(tmp_path):
     assert "checksum is wrong" in told
 
 
-@pytest.mark.parametrize(("end", "note"), [("out.write(b'bye')", "wrote 3 bytes more")])
-def test_what_a_program_does_at_its_end_is_noted(tmp_path, end, note):
-    path = program(tmp_path)
-    with open(path[-1], "a") as file:
-        file.write(f"\n{end}\n")
-    outcome = judged(path)
-    assert outcome.verdict.outcome == "not rejected"
-    assert note in outcome.notes[0]
-    dies = judged(program(tmp_path, "os._exit(3)"))
-    assert dies.notes == ()  # the verdict says it
+def test_a_verdict_that_says_it_has_no_note(tmp_path):
+    assert judged(program(tmp_path, "os._exit(3)")).notes == ()
 
 
 @pytest.mark.parametrize("leaving", ["", "os.setsid()"])

@@ -51,6 +51,22 @@ def test_samples_against_the_oracle(tmp_path, suffix):
     assert wrong.reproduce.startswith("fogproof check /")
 
 
+def test_numbers_of_another_type_or_of_few_digits_are_named(tmp_path):
+    x = directions(4000)
+    bare = {**DIRECTIONS, "columns": ["x", "x", "x"]}
+    (tmp_path / "x.bin").write_bytes(x.tobytes())
+    wide = check_file(tmp_path / "x.bin", {**bare, "type": "float32"}).verdict
+    assert wide.cause == "number type", wide
+    (tmp_path / "x.bin").write_bytes(x.astype(np.float32).tobytes())
+    assert check_file(tmp_path / "x.bin", bare).verdict.cause == "number type"
+    np.savetxt(
+        tmp_path / "x.csv", np.column_stack([x, density(x)]), fmt="%g", delimiter=",", header="x,x,x,pdf", comments=""
+    )
+    few = check_file(tmp_path / "x.csv", {"domain": "sphere"}).verdict
+    assert few.cause == "coarse numbers", few
+    assert "%.17g" in str(few)
+
+
 def test_few_rows_are_enough_to_begin_with(tmp_path):
     """Nothing is counted twice, and a short file is judged as far as it goes."""
     verdict = check_file(written(tmp_path / "x.npy", directions(400)), DIRECTIONS).verdict

@@ -238,3 +238,80 @@ def test_the_plugin_is_turned_on_and_off_by_its_name(tmp_path, options):
 def test_the_plugin_alone_loads_nothing_heavy():
     code = "import fogproof_pytest, sys; print([m for m in ('numpy', 'fogproof', 'scipy') if m in sys.modules])"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout.strip() == "[]"
+
+
+LOST = """
+    import threading
+    import numpy as np
+    import pytest
+
+    def reject(fogproof):
+        fogproof.check_estimator(lambda rng, n: rng.random(n), 0.9, samples=2000)
+
+    def test_thread(fogproof):
+        thread = threading.Thread(target=reject, args=(fogproof,))
+        thread.start()
+        thread.join()
+
+    def test_caught(fogproof):
+        with pytest.raises(AssertionError):
+            reject(fogproof)
+
+    def test_running(fogproof):
+        begun, go = threading.Event(), threading.Event()
+        slow = lambda rng, n: begun.set() or go.wait(0.5) or rng.random(n)
+        threading.Thread(target=lambda: fogproof.check_estimator(slow, 0.5, samples=2)).start()
+        begun.wait()
+
+    @pytest.mark.xfail
+    def test_expected(fogproof):
+        reject(fogproof)
+
+    def test_kept(fogproof):
+        pytest.kept = fogproof
+
+    def test_later():
+        reject(pytest.kept)
+"""
+
+
+def test_a_rejection_fails_its_test_whoever_catches_it(tmp_path):
+    out = run(tmp_path, LOST, "-rA", "-W", "ignore", "--fogproof-report", str(tmp_path / "report"))
+    outcomes: dict[str, str] = {}
+    for found, test in re.findall(r"^([A-Z]+) test_mine.py::(\w+)", out.stdout, re.M):
+        outcomes[test] = f"{outcomes.get(test, '')} {found}".strip()
+    assert outcomes == {
+        "test_thread": "FAILED",
+        "test_caught": "FAILED",
+        "test_running": "PASSED ERROR",
+        "test_expected": "XFAIL",
+        "test_kept": "PASSED",
+        "test_later": "FAILED",
+    }, out.stdout
+    assert "check_estimator: rejected, though the exception has not ended the test" in out.stdout
+    assert "check_estimator still runs where test_running ends" in out.stdout
+    assert "called by the fixture of test_mine.py::test_kept, which had ended" in out.stdout
+    cases = json.loads((tmp_path / "report" / "results.json").read_text())["cases"]
+    assert [case["status"] for case in cases if "running" not in case["name"]] == ["rejected"] * 3
+
+
+AFTER = """
+    import pytest
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_sessionfinish():
+        if kept := getattr(pytest, "kept", None):
+            with pytest.raises(Exception):
+                kept.check_estimator(lambda rng, n: rng.random(n), 0.9, samples=2000)
+"""
+
+
+@pytest.mark.parametrize("workers", [(), ("-n", "1")], ids=["alone", "xdist"])
+def test_what_comes_after_the_last_test_fails_the_session(tmp_path, workers):
+    (tmp_path / "conftest.py").write_text(textwrap.dedent(AFTER))
+    out = run(tmp_path, "def test_mine(fogproof): __import__('pytest').kept = fogproof", *workers)
+    assert "1 passed" in out.stdout
+    assert out.returncode == 1
+    assert (
+        "so that the session fails: check_estimator was called by the fixture of test_mine.py::test_mine" in out.stdout
+    )

@@ -76,6 +76,32 @@ def test_unreadable_record_is_explained(tmp_path, content, words):
     assert str(tmp_path) in str(error.value)
 
 
+@pytest.mark.parametrize("value", ["NaN", "1e999", "-1e-6", '"nan"', "true", "[]"])
+@pytest.mark.parametrize("name", ["alpha", "seconds"])
+def test_a_figure_that_no_run_has_is_refused(tmp_path, name, value):
+    write_record(record([case("a")]), tmp_path)
+    file = tmp_path / "results.json"
+    read_record(tmp_path)
+    told = json.loads(file.read_text())
+    for table, place in ((told, name), (told["cases"][0]["verdict"], f"cases.0.verdict.{name}")):
+        kept, table[name] = table[name], "planted"
+        file.write_text(json.dumps(told).replace('"planted"', value))
+        with pytest.raises(InvalidInputError, match=rf"results.json: {place} must be a finite number >= 0, got "):
+            read_record(tmp_path)
+        table[name] = kept
+    told["cases"][0]["verdict"]["options"] = {"alpha": "theirs"}
+    file.write_text(json.dumps(told))
+    read_record(tmp_path)
+
+
+def test_what_is_no_folder_of_a_run_is_said_to_be_none(tmp_path):
+    (tmp_path / "results.json").write_text('{"format": "fogproof-image-1"}')
+    with pytest.raises(InvalidInputError, match="is a record of another kind"):
+        read_record(tmp_path)
+    with pytest.raises(InvalidInputError, match=r"results.json is a file: give the folder that it lies in"):
+        read_record(tmp_path / "results.json")
+
+
 def test_missing_folder_is_explained(tmp_path):
     with pytest.raises(InvalidInputError, match="there is no folder"):
         read_record(tmp_path / "nowhere")

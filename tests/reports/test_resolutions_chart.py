@@ -36,3 +36,11 @@ def test_names_wider_than_half_the_chart_lose_their_middle():
     page = drawn("w" * 200, "x").on_page
     assert "w…w" in page
     assert "w" * 100 not in page
+
+
+@pytest.mark.parametrize(
+    ("last", "said"), [(1.0001e-3, "errors above 0.001 (bias)"), (2e-3, "errors above 0.001 to 0.002 (")]
+)
+def test_a_range_that_is_one_number_is_said_as_one(last, said):
+    passes = (("a", "bias", 1e-3), ("b", "bias", last))
+    assert said in render(Resolutions(passes), "a").words

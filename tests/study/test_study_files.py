@@ -36,6 +36,7 @@ FAULTS = [
     (["samples"], [100, 1000.5], "samples.1"),
     (["replicates"], 2, "replicates must be a whole number >= 4"),
     (["alpha"], 2, "alpha must lie in"),
+    (["alpha"], 1e-320, "alpha must lie in (0, 1), and not below 1e-100"),
     (["scenes"], [], "scenes is missing"),
     (["nonsense"], 1, "nonsense is not a known key"),
     (["replicate"], 4, "replicate is not a known key; did you mean replicates?"),

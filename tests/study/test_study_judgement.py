@@ -51,7 +51,9 @@ def cell(off=normal):
 def level(x):
     squares = moments_of(np.square(x - MEAN).reshape(1, -1))[0]
     tail = _largest(np.abs(x - MEAN).ravel())
-    return Level(x.shape[1], moments_of(x), len(x), squares, tail, math.nan, np.full(2, 1e-3), 1e-6, 1, 1e-3)
+    return Level(
+        x.shape[1], moments_of(x), len(x), squares, tail, math.nan, np.full(2, 1e-3), 1e-6, 1, 1e-3, np.empty((0, 4))
+    )
 
 
 def levels(off):

@@ -1,10 +1,12 @@
 """One's own estimator in a study: judged like any other, never mixed with what an older state of its source drew."""
 
+import json
 import textwrap
 
 import pytest
 from study_fixtures import RAY, toml
 
+from fogproof.cli.commands import cli as command
 from fogproof.errors import FogproofError
 from fogproof.study import read_study, run_study
 from fogproof.study.cells import cells_of, prepare
@@ -116,6 +118,7 @@ def test_what_is_no_number_has_no_bias(tmp_path):
 
 
 DECLARING = """
+    import numpy as np
     from fogproof.contracts import Reference
 
     class Mine:
@@ -132,7 +135,12 @@ DECLARING = """
 @pytest.mark.parametrize(
     ("name", "value", "rule"),
     [
-        ("drawn", "rng.random(n) * 1j", "draw: TypeError: must return real numbers, got complex128"),
+        (
+            "drawn",
+            "rng.random(n) * 1j",
+            "draw must return real numbers, got dtype complex128; return the real or the imaginary part",
+        ),
+        ("drawn", "np.array(['1.5'] * n)", "draw must return real numbers, got dtype <U3"),
         ("of_object", "self.variance = -1", "variance must be finite and >= 0, got -1.0; give the exact"),
         ("of_object", "self.variance = 1j", "variance must be a number"),
         ("of_object", "self.variance = [1, 2]", "variance must be a single number"),
@@ -145,7 +153,7 @@ DECLARING = """
 def test_what_breaks_its_contract_is_named_before_anything_runs(tmp_path, name, value, rule):
     whole = {"of_class": "pass", "of_object": "pass", "drawn": "rng.random(n)"}
     path = study_file(tmp_path / "s", [{"kind": "my_module:Mine"}], DECLARING.format(**{**whole, name: value}))
-    with pytest.raises(FogproofError, match=rf"study\.toml: scene 'fog', my_module:Mine: my_module:Mine: {rule}"):
+    with pytest.raises(FogproofError, match=rf"study\.toml: scene 'fog', my_module:Mine: {rule}"):
         prepare(cells_of(read_study(path)))
     path = study_file(tmp_path / "s", [{"kind": "my_module:Mine"}], DECLARING.format(**whole))
     prepare(cells_of(read_study(path)))
@@ -158,3 +166,40 @@ def test_a_scene_has_a_name(tmp_path, name):
     )
     with pytest.raises(FogproofError, match=r"name must not be blank, got .* give the scene a name"):
         read_study(tmp_path / "study.toml")
+
+
+ENDING = """
+    import os
+
+    class Ending:
+        def __init__(self, scene, most=0):
+            self.most = most
+
+        def draw(self, rng, n):
+            return rng.random(n) if n <= self.most else os._exit(0)
+"""
+
+
+def test_what_ends_its_process_at_its_first_call_is_named_and_nothing_runs(tmp_path):
+    path = study_file(tmp_path / "s", [{"kind": "my_module:Ending"}], ENDING)
+    with pytest.raises(
+        FogproofError, match="scene 'fog', my_module:Ending: the subject ended the process, exit code 0"
+    ):
+        run_study(read_study(path), tmp_path / "run", executor="processes")
+    assert not (tmp_path / "run").exists()
+
+
+def test_what_ends_its_process_later_costs_its_own_results_alone(tmp_path, capsys, monkeypatch):
+    """By the command, which would draw in threads: 0 without a word and a page was the end of that."""
+    monkeypatch.setattr("fogproof.study.run.ATTEMPTS", 1)  # a new pool of workers each
+    estimators = [{"kind": "my_module:Ending", "most": 64}, {"kind": "analog"}]
+    path = study_file(tmp_path / "s", estimators, ENDING, samples=[64, 512, 4096], sobol=False)
+    command(["study", str(path), "-o", str(tmp_path / "run"), "--workers", "1"], standalone_mode=False)
+    record = json.loads((tmp_path / "run" / "results.json").read_text())
+    assert (record["exit_code"], record["executor"]) == (1, "processes")
+    assert {failure["estimator"] for failure in record["failures"]} == {"my_module:Ending (most = 64)"}
+    assert "this one was not tried" in record["failures"][-1]["error"]
+    assert record["scenes"][0]["estimators"][1]["status"] == "passed"
+    told = capsys.readouterr().err
+    assert told.count("failed 1 times: the worker that drew it died, and ") == 1
+    assert (tmp_path / "run" / "index.html").exists()

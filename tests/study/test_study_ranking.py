@@ -72,3 +72,14 @@ def test_a_sentence_says_no_more_than_the_intervals(status):
         else:
             assert head.lower().startswith(f"{first.name} is soonest: 1 %")
     assert seen == {True, False}
+
+
+def test_who_is_first_to_several_errors_is_named_once():
+    """Another that cannot be told from it to one error, and is later to the next, is named where it belongs."""
+    first, other = equal(np.random.default_rng(), 2, scatter=0.0)
+    late = Times(9 * other.seconds)
+    other.reaches = (other.reaches[0], *(Reach(error, "measured", "", 1.0, late) for error in TARGETS[1:]))
+    head = ranked([first, other])["text"].split(". ")[0]
+    assert head.startswith("N0 is first, though not to be told from n1: 1 % in ")
+    assert "; soonest: 0.1 % and 0.01 % in " in head
+    assert head.count("N0") + head.count("n0") == 1

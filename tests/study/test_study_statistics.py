@@ -20,6 +20,7 @@ from study_fixtures import LIT, SMALL, drawn, estimator, kinds, study_from
 from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.statistics.tails import binomial_at_most
 from fogproof.contracts import Reference
+from fogproof.study import fixed_work
 from fogproof.study.aggregate import Level, merged, pooled
 from fogproof.study.batches import TAIL, TAIL_SHARE, _largest, moments_of
 from fogproof.study.cells import cells_of
@@ -341,7 +342,9 @@ def test_what_is_too_skewed_to_judge_asks_for_more_and_is_no_failure(monkeypatch
 def test_more_samples_never_take_less_time():
     def level(count, *seconds):
         rows = np.zeros((2, 10))
-        return Level(count, rows, 2, np.zeros(10), np.empty(0), math.nan, np.array(seconds), 0.0, 2, 0.0)
+        return Level(
+            count, rows, 2, np.zeros(10), np.empty(0), math.nan, np.array(seconds), 0.0, 2, 0.0, np.empty((0, 4))
+        )
 
     found = [
         t.estimate.value
@@ -403,14 +406,7 @@ def test_nothing_changed_between_a_run_and_itself(record):
     found = compare(record, record)
     assert found["same_draws"]
     assert not found["worse"]
-    assert found["text"] == "nothing changed beyond noise"
-
-
-def test_few_estimators_say_that_they_hardly_tell_a_change_of_speed(record):
-    few = copy.deepcopy(record)
-    few["scenes"] = few["scenes"][:1]
-    few["scenes"][0]["estimators"] = few["scenes"][0]["estimators"][:3]
-    assert compare(few, few)["text"].endswith("a change of speed is hardly told from a mood of the machine")
+    assert found["text"].startswith("nothing changed beyond noise")
 
 
 def test_draws_are_the_same_whatever_the_checks_say_of_them(record):
@@ -431,8 +427,15 @@ def test_other_random_numbers_change_nothing_beyond_noise(record, tmp_path):
     assert not {"biased", "different", "noisier", "less noisy"} & set(became)
 
 
+def on_a_slower_machine(e):
+    for timing in e["speed"]["counts"]:
+        timing |= {key: 1e6 * timing[key] for key in ("seconds", "low", "high")}
+
+
 def slower(e):
-    e["speed"]["cpu"] = {k: (v * 1e6 if isinstance(v, float) else v) for k, v in e["speed"]["cpu"].items()}
+    on_a_slower_machine(e)
+    for timing in e["speed"]["counts"]:
+        timing["fixed_work"] |= {key: 1e6 * timing["fixed_work"][key] for key in fixed_work.COLUMNS}
 
 
 def noisier(e):
@@ -462,7 +465,7 @@ def test_a_slower_machine_is_no_slower_estimator(record):
     after = copy.deepcopy(record)
     for scene in after["scenes"]:
         for e in scene["estimators"]:
-            slower(e)
+            on_a_slower_machine(e)
     found = compare(record, after)
     assert found["mood"] == pytest.approx(1e6)
     assert not found["worse"]

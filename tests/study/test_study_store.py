@@ -290,3 +290,31 @@ def test_a_store_that_loses_its_name_is_told(tmp_path, how):
         how(tmp_path / FILE)
         with pytest.raises(StoreError, match="moved or removed while the study ran"):
             store.add([])
+
+
+@pytest.mark.parametrize("size", [0, 1, 99])
+def test_a_store_cut_to_nothing_beside_results_is_damage(tmp_path, size):
+    (tmp_path / FILE).touch()  # as a process leaves it that was killed while it made the store
+    with opened(tmp_path, STUDY):
+        pass
+    os.truncate(tmp_path / FILE, size)
+    (tmp_path / "results.json").write_text("{}")
+    words = f"is damaged: it has {size} bytes, though there are results; add --salvage"
+    with pytest.raises(StoreError, match=words), opened(tmp_path, STUDY):
+        pass
+    with opened(tmp_path, STUDY, salvage=True) as store:
+        assert store.done() == set()
+
+
+def test_a_store_that_is_no_file_is_told(tmp_path):
+    (tmp_path / FILE).symlink_to(os.devnull)
+    with pytest.raises(StoreError, match=r"sqlite is no file; remove it"), opened(tmp_path, STUDY):
+        pass
+
+
+def test_what_would_undo_a_store_is_damage(tmp_path):
+    with opened(tmp_path, STUDY):
+        pass
+    tampered(tmp_path / FILE, "create trigger t before insert on batches begin select raise(ignore); end")
+    with pytest.raises(StoreError, match="it holds triggers or views"), opened(tmp_path, STUDY):
+        pass

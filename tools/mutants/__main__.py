@@ -86,6 +86,9 @@ def main() -> int:
     if asked.sample:
         chosen = random.Random(asked.seed).sample(chosen, min(asked.sample, len(chosen)))
     chosen = [m for m in chosen if m.key not in done or (asked.again and done[m.key]["outcome"] != "killed")]
+    for mutant in (stale := [m for m in chosen if m.stale]):
+        print(f"stale     {mutant.file}: {mutant.what}: write it anew", flush=True)
+    chosen = [m for m in chosen if m not in stale]
     RESULTS.parent.mkdir(exist_ok=True)
     lock, survivors = Lock(), []
     copies: queue.Queue[Copy] = queue.Queue()

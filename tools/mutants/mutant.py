@@ -44,6 +44,11 @@ class Mutant:
         """A name that changes with the error, and with nothing else."""
         return hashlib.blake2b("\0".join((self.file, self.old, self.new)).encode(), digest_size=6).hexdigest()
 
+    @property
+    def stale(self) -> bool:
+        """Whether the source has moved on: the error has to be written anew."""
+        return (ROOT / self.file).read_text().count(self.old) != 1
+
     def applied(self, text: str) -> str:
         """Return the text of the file with the error in it."""
         count = text.count(self.old)

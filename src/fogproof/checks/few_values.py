@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from fogproof.checks.statistics.repeats import coarse_test
-from fogproof.checks.subject import Subject, nudged
+from fogproof.checks.subject import Subject
 from fogproof.checks.verdict import Finding
 
 _SPOILT = 1e-4  # of a law, in one step: as much as any check here may see
@@ -30,7 +30,7 @@ def few_values(name: str, subject: Subject, axis: str, pilot: np.ndarray, points
         return law.coordinates(x, np.full((len(x), len(law.axes)), 0.5))[:, column]
 
     shown = points[:_NUDGED]
-    moves = [np.abs(coordinate(moved) - coordinate(shown)) for moved in nudged(shown, subject.roundoff)]
+    moves = [np.abs(coordinate(moved) - coordinate(shown)) for moved in subject.nudged(shown)]
     moves = [np.minimum(move, 1 - move) for move in moves]
     rounding = float(np.median(np.max(moves, axis=0))) if len(shown) else 0.0
     t = coordinate(points)

@@ -12,7 +12,7 @@ from collections.abc import Callable
 import numpy as np
 
 from fogproof.checks.probes import agreement
-from fogproof.checks.subject import Subject, call, numbers, rounding_spread
+from fogproof.checks.subject import Subject, call, numbers
 from fogproof.checks.verdict import Finding
 
 Map = Callable[[np.ndarray], np.ndarray]
@@ -65,7 +65,7 @@ def _compared(
     if not len(points) or np.mean(good) < _TOO_FEW:
         return float(np.mean(good)) if len(points) else 0.0
     points, claimed, right = points[good], claimed[good], (mass * ratio * known)[good]
-    slack = _TOLERANCE * (np.abs(right) + np.abs(claimed)) + rounding_spread(subject.density, points, subject.roundoff)
+    slack = _TOLERANCE * (np.abs(right) + np.abs(claimed)) + subject.rounding_spread(subject.density, points)
     off = np.abs(claimed - right) > slack
     if 0 < np.count_nonzero(off) <= _FEW:
         points, claimed, right, slack = points[~off], claimed[~off], right[~off], slack[~off]

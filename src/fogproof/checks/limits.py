@@ -10,7 +10,7 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
 from fogproof import servers
@@ -33,17 +33,21 @@ def within(seconds: float, check: Callable[[], Answer]) -> Answer:
     return _answer_of(multiprocessing.get_context("fork"), seconds, check)
 
 
-def isolated(check: Callable[[], Answer], seconds: float | None = None) -> Answer:
+_SLOW = ("fogproof.verify", "fogproof.checks.suite", "scipy.stats", "scipy.optimize")
+
+
+def isolated(check: Callable[[], Answer], seconds: float | None = None, preload: Sequence[str] = _SLOW) -> Answer:
     """Return check() from a fresh process, or raise `SubjectError` if it ends that process, or takes longer than `seconds`.
 
     Unlike `within` it may be called while other threads are at work, on any system; the check must be picklable: a function of a
     module, or a partial of one.
+
+    preload  modules that take long to load, for the first such call of a process
     """
     if seconds is not None:
         time_limit("seconds", seconds)
-    slow = ["fogproof.verify", "fogproof.checks.suite", "scipy.stats", "scipy.optimize"]
     try:
-        context = servers.context(slow)
+        context = servers.context(list(preload))
     except OSError as error:
         raise _no_process(error) from None
     return _answer_of(context, seconds, check)

@@ -18,7 +18,7 @@ from fogproof.checks.statistics.label_scores import Basis
 from fogproof.checks.statistics.label_strips import Strips
 from fogproof.checks.statistics.labels import Sums
 from fogproof.checks.streams import batch_generator
-from fogproof.checks.subject import Subject, in_domain, nudged
+from fogproof.checks.subject import Subject, in_domain
 from fogproof.contracts import Draw
 from fogproof.domains import Law
 
@@ -83,7 +83,7 @@ class MixtureTest:
         middle = 0.5 * (self.tree.low + self.tree.high)
         half = np.full(middle.shape, 0.5)
         x = self.law.place(middle)
-        near = [self.law.coordinates(y, half) for y in (x, *nudged(x, self.subject.roundoff))]
+        near = [self.law.coordinates(y, half) for y in (x, *self.subject.nudged(x))]
         step = np.max([np.abs(u - middle) for u in near], axis=0)
         kept = replace(self, tree=self.tree.without(np.any(sides < _THIN * step, axis=1)))
         across = kept._across(points[:_CHECKED])
@@ -195,7 +195,7 @@ class MixtureTest:
         k = len(self.law.axes)
         leaf = self.tree.leaf(self.law.coordinates(points, np.full((len(points), k), 0.5)))
         across = np.zeros(len(points), dtype=bool)
-        for near in nudged(points, self.subject.roundoff):
+        for near in self.subject.nudged(points):
             across |= self.tree.leaf(self.law.coordinates(near, np.full((len(near), k), 0.5))) != leaf
         return across
 
@@ -232,7 +232,7 @@ def moved_by_rounding(subject: Subject, points: np.ndarray) -> np.ndarray:
     """Return (n,) where the pdf changes so much by rounding of the point that its value there says nothing."""
     p = subject.density(points)
     moved = np.isinf(p)
-    for near in nudged(points, subject.roundoff):
+    for near in subject.nudged(points):
         with np.errstate(all="ignore"):
             moved |= ~(np.abs(subject.density(near) - p) <= _MOVED * p) & (p > 0)
     return moved

@@ -7,7 +7,7 @@ import numpy as np
 from fogproof.checks.density.charts import Chart
 from fogproof.checks.density.model import Density, Effort
 from fogproof.checks.density.quadrature import Leaves, evaluate, refine
-from fogproof.checks.subject import Precision, Subject, call, nudged
+from fogproof.checks.subject import Precision, Subject, call
 from fogproof.checks.verdict import Finding, Outcome, Resolution
 from fogproof.errors import SubjectError
 
@@ -53,7 +53,7 @@ def pdf_noise(subject: Subject, pilot: np.ndarray) -> float:
     good = np.isfinite(p) & (p > 0)
     if not good.any():
         return 0.0
-    moves = [np.abs(subject.density(moved) / p[good] - 1) for moved in nudged(points[good], _UNSEEN)]
+    moves = [np.abs(subject.density(moved) / p[good] - 1) for moved in subject.nudged(points[good], _UNSEEN)]
     change = np.max(moves, axis=0)
     change = change[np.isfinite(change)]
     return float(np.quantile(change, _JUMPING)) if len(change) else 0.0

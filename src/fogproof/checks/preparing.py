@@ -31,7 +31,7 @@ from fogproof.checks.promises import at_any_atom, inside
 from fogproof.checks.purity import heeds_generator, purity
 from fogproof.checks.statistics.serial import in_units
 from fogproof.checks.streams import batch_generator
-from fogproof.checks.subject import Subject, nudged
+from fogproof.checks.subject import Subject
 from fogproof.checks.table import table_grid
 from fogproof.checks.verdict import Finding
 from fogproof.domains import Discrete
@@ -139,7 +139,7 @@ def _rounded(subject: Subject, points: np.ndarray, seed: int) -> Rounded:
         if not np.array_equal(single.x[both], double.x[both]):
             shown, exact = single.x[both], double.x[both]
     grain = 0.0 if subject.uniform_bits is None else _STEPS * 2.0**-subject.uniform_bits
-    return Rounded(shown, nudged(shown[:ROUNDED], subject.roundoff), exact, subject.roundoff, grain)
+    return Rounded(shown, subject.nudged(shown[:ROUNDED]), exact, subject.roundoff, grain)
 
 
 def _independent(grid: Grid) -> bool:
@@ -211,7 +211,7 @@ def _precision(subject: Subject, claim: Claim, seed: int) -> Finding:
     u = batch_generator(seed, "precision", 0, 0).random((_PRECISION_POINTS, subject.dimensions), dtype=np.float32)
 
     def probability(x: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
-        counted, moved = claim.chart.count(x), [claim.chart.count(y) for y in nudged(x, subject.roundoff)]
+        counted, moved = claim.chart.count(x), [claim.chart.count(y) for y in subject.nudged(x)]
         found = []
         for axis, m in enumerate(claim.grid.marginals):
             step = _CANCELLED * subject.roundoff * (m.edges[-1] - m.edges[0])

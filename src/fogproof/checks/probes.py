@@ -9,7 +9,7 @@ import numpy as np
 
 from fogproof.checks.density.lattice import lattice
 from fogproof.checks.promises import at_any_atom, inside
-from fogproof.checks.subject import Subject, call, in_domain, rounding_spread
+from fogproof.checks.subject import Subject, call, in_domain
 from fogproof.checks.verdict import Finding, Resolution
 from fogproof.errors import SubjectError, shorten
 
@@ -26,7 +26,7 @@ def reference_agreement(subject: Subject, points: np.ndarray) -> Finding:
     assert subject.reference is not None
     reference = subject.reference(points)
     p = subject.density(points)
-    slack = reference.error + rounding_spread(subject.density, points, subject.roundoff)
+    slack = reference.error + subject.rounding_spread(subject.density, points)
     return agreement("pdf against the reference", p, np.broadcast_to(reference.value, p.shape), slack, points)
 
 

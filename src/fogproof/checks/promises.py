@@ -10,11 +10,10 @@ from typing import Any
 import numpy as np
 
 from fogproof.checks.digits import rounded
-from fogproof.checks.subject import Subject, call, in_domain, named, nudged, rounding_spread
+from fogproof.checks.subject import Subject, call, in_domain, named
 from fogproof.checks.telling import few_digits, nearly, ratio_of, relation
 from fogproof.checks.verdict import Finding
 from fogproof.contracts import Draw
-from fogproof.domains import Discrete
 from fogproof.errors import shorten
 
 _CAUSES = {
@@ -111,10 +110,8 @@ class Watch:
             p == np.inf
         )  # rounding gathers samples where a density diverges: no error, and nothing can be said of them
         zero = ~(p > 0)
-        if zero.any() and not isinstance(
-            subject.domain, Discrete
-        ):  # the very edge of the support may be missed by rounding
-            beside = (*nudged(points[zero], subject.roundoff), _within(subject, points[zero]))
+        if zero.any():  # the very edge of the support may be missed by rounding
+            beside = (*subject.nudged(points[zero]), _within(subject, points[zero]))
             near = [subject.density(y) for y in beside]
             begins = np.any([np.isfinite(q) & (q > 0) for q in near], axis=0)
             zero[zero] = np.isnan(p[zero]) | ~begins  # no rounding makes a density of what is no number
@@ -148,7 +145,7 @@ class Watch:
         got = returned[at]
         differ = ~(np.abs(got - p) <= 64 * subject.roundoff * np.abs(p)) & (got != p)
         if differ.any():
-            slack = rounding_spread(subject.density, x[at[differ]], subject.roundoff)
+            slack = subject.rounding_spread(subject.density, x[at[differ]])
             differ[differ] = ~(np.abs(got[differ] - p[differ]) <= _with_usual_noise(slack, p[differ]))
         why = ""
         if differ.any():
@@ -181,7 +178,7 @@ class Watch:
         rows = np.flatnonzero(differ if differ.ndim == 1 else differ.any(axis=1))
         wrong = np.zeros(len(points), dtype=bool)
         if len(rows):
-            slack = _with_usual_noise(rounding_spread(right, points[rows], subject.roundoff), w[rows])
+            slack = _with_usual_noise(subject.rounding_spread(right, points[rows]), w[rows])
             off = ~(np.abs(got[rows] - w[rows]) <= slack) & differ[rows]
             wrong[rows] = off if off.ndim == 1 else off.any(axis=1)
         tell = lambda i: f"weight {shorten(got[i])}, eval/pdf is {shorten(w[i])} at x = {shorten(points[i])}"  # noqa: E731

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from fogproof.contracts import Draw, Reference
 from fogproof.domains import Domain
+from fogproof.domains.law import whole_columns
 from fogproof.errors import FogproofError, SubjectError, shorten
 
 Precision = Literal["float64", "float32"]
@@ -75,6 +76,16 @@ class Subject:
         if len(x) > 2 * _BLOCK:
             return np.concatenate([self.density(x[start : start + _BLOCK]) for start in range(0, len(x), _BLOCK)])
         return numbers("pdf(x)", call("pdf(x)", self.pdf, x), (len(x),))
+
+    def nudged(self, x: np.ndarray, roundoff: float | None = None) -> list[np.ndarray]:
+        """Return copies of the points moved as far as rounding moves them, by `roundoff` or by the sampler's own."""
+        return nudged(x, self.roundoff if roundoff is None else roundoff, whole_columns(self.domain))
+
+    def rounding_spread(self, f: Callable[[np.ndarray], np.ndarray], x: np.ndarray) -> np.ndarray:
+        """Return (m,) how far f(x) may be off because x and f are rounded numbers."""
+        y = f(x)
+        moves = np.sum([np.abs(f(z) - y) for z in self.nudged(x)], axis=0)
+        return 64 * self.roundoff * np.abs(y) + 2 * np.nan_to_num(moves, nan=np.inf)
 
     def at_atom(self, x: np.ndarray) -> dict[Any, np.ndarray]:
         """Return for each declared atom which of the points are at it, in the sampler's precision.
@@ -185,30 +196,28 @@ def in_domain(domain: Domain, x: np.ndarray, roundoff: float) -> np.ndarray:
     return np.asarray(call("the domain's contains(x)", domain.contains, x, 16 * roundoff))
 
 
-def nudged(x: np.ndarray, roundoff: float) -> list[np.ndarray]:
+def nudged(x: np.ndarray, roundoff: float, whole: Sequence[bool] = ()) -> list[np.ndarray]:
     """Return copies of the points, each moved along one coordinate by a few roundings, both ways.
 
     How much a density changes there is how much of a difference rounding alone can explain. A coordinate of a vector is rounded as
-    its own size has it, or as that of the others, up to 1, of which a frame may have made it.
+    its own size has it, or as that of the others, up to 1, of which a frame may have made it. Coordinates that are `whole` numbers
+    stay: the next one is no neighbour.
     """
     step = 4 * roundoff
+    if any(whole) and all(whole):
+        return [x.copy()]
     if x.ndim == 1:
         return [x * (1 + step), x * (1 - step)]
     moved, largest = [], np.minimum(np.abs(x).max(axis=1, initial=0.0), 1.0)
     for axis in range(x.shape[1]):
+        if whole and whole[axis]:
+            continue
         size = np.maximum(np.abs(x[:, axis]), largest)
         for sign in (step, -step):
             copy = x.copy()
             copy[:, axis] += sign * size
             moved.append(copy)
     return moved
-
-
-def rounding_spread(f: Callable[[np.ndarray], np.ndarray], x: np.ndarray, roundoff: float) -> np.ndarray:
-    """Return (m,) how far f(x) may be off because x and f are rounded numbers."""
-    y = f(x)
-    moves = np.sum([np.abs(f(z) - y) for z in nudged(x, roundoff)], axis=0)
-    return 64 * roundoff * np.abs(y) + 2 * np.nan_to_num(moves, nan=np.inf)
 
 
 def named(point: Any) -> str:

@@ -20,7 +20,7 @@ from fogproof.checks.statistics.binomial import binomial
 from fogproof.checks.statistics.cells import blocks
 from fogproof.checks.statistics.chi_square import chi_square_along, joint
 from fogproof.checks.statistics.evenness import evenness_test
-from fogproof.checks.statistics.known import Declarable
+from fogproof.checks.statistics.known import NOTHING_MORE, Declarable
 from fogproof.checks.statistics.kolmogorov import kolmogorov
 from fogproof.checks.statistics.means import mean_test
 from fogproof.checks.statistics.moments import Moments
@@ -80,7 +80,14 @@ def tests_of(prepared: Prepared, tally: Tally) -> list[Test]:
         data = tally.weights or (Moments(),) * len(claims)
         for channel, claimed in enumerate(claims.tolist()):
             name = "mean weight" if len(claims) == 1 else f"mean weight of channel {channel}"
-            add("mean weight", _mean_weight, name, data[channel], claimed)
+            add(
+                "mean weight",
+                _mean_weight,
+                name,
+                data[channel],
+                claimed,
+                _WEIGHTS if subject.eval is None else NOTHING_MORE,
+            )
     return tests
 
 
@@ -144,5 +151,5 @@ def _add_labels(add: Callable[..., None], mixture: MixtureTest, tally: Tally, al
 _WEIGHTS = Declarable(other="give eval, and every single weight is held to eval(x) / pdf(x)")
 
 
-def _mean_weight(name: str, data: Moments, claimed: float, alpha: float) -> Finding:
-    return mean_test(name, name, data, claimed, 1e-6 * abs(claimed), alpha, "wrong weight", ways=_WEIGHTS)
+def _mean_weight(name: str, data: Moments, claimed: float, ways: Declarable, alpha: float) -> Finding:
+    return mean_test(name, name, data, claimed, 1e-6 * abs(claimed), alpha, "wrong weight", ways=ways)

@@ -8,7 +8,7 @@ import click
 
 from fogproof.checks.json_values import jsonable
 from fogproof.cli.terminal import say, what_is_done
-from fogproof.cli.values import POSITIVE, PROBABILITY, SECONDS
+from fogproof.cli.values import NAMED, POSITIVE, PROBABILITY, SECONDS
 from fogproof.pipe.check import Checked, Settings, check_file, check_program
 from fogproof.pipe.process import Timeouts
 
@@ -16,9 +16,11 @@ _CODES = {"not rejected": 0, "rejected": 1, "inconclusive": 3}
 
 
 @click.command("check")
-@click.argument("file", required=False, metavar="[FILE]")
+@click.argument("file", required=False, metavar="[FILE]", type=NAMED)
 @click.option("--exec", "program", metavar="COMMAND", help="The program and its arguments; no shell reads it.")
-@click.option("--spec", required=True, metavar="SPEC.toml", help="What it is, and how to judge it; see docs/pipe.md.")
+@click.option(
+    "--spec", required=True, metavar="SPEC.toml", type=NAMED, help="What it is, and how to judge it; see docs/pipe.md."
+)
 @click.option("--samples", type=click.IntRange(min=100), help="Most samples; 1000000 by default, of a file all.")
 @click.option(
     "--alpha", type=PROBABILITY, default=1e-6, show_default=True, help="False-alarm probability of this check."

@@ -9,7 +9,7 @@ import click
 
 from fogproof.cli.force import FORCE, take
 from fogproof.cli.terminal import say
-from fogproof.cli.values import FOLDER, PROBABILITY, RELATIVE
+from fogproof.cli.values import FOLDER, NAMED, PROBABILITY, RELATIVE
 from fogproof.images.compare import compare_image
 from fogproof.images.judging import ALPHA, TOLERANCE, ImageComparison
 from fogproof.images.pairs import compare_pictures
@@ -19,9 +19,14 @@ SCENES = (".toml", ".json")
 
 
 @click.command("compare")
-@click.argument("images", nargs=-1, required=True, metavar="IMAGE... SCENE.toml")
+@click.argument("images", nargs=-1, required=True, metavar="IMAGE... SCENE.toml", type=NAMED)
 @click.option(
-    "--with", "others", multiple=True, metavar="IMAGE", help="Compare with this image, without an oracle; repeatable."
+    "--with",
+    "others",
+    multiple=True,
+    metavar="IMAGE",
+    type=NAMED,
+    help="Compare with this image, without an oracle; repeatable.",
 )
 @click.option(
     "--tolerance", type=RELATIVE, default=TOLERANCE, show_default=True, help="Relative error that does not matter."

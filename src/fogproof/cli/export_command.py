@@ -7,11 +7,11 @@ from pathlib import Path
 import click
 
 from fogproof.cli.terminal import say
-from fogproof.cli.values import FILE
+from fogproof.cli.values import FILE_OR_STDOUT, NAMED
 
 
 @click.command("export")
-@click.argument("scene", metavar="SCENE.toml")
+@click.argument("scene", metavar="SCENE.toml", type=NAMED)
 @click.option(
     "--to",
     "target",
@@ -19,7 +19,7 @@ from fogproof.cli.values import FILE
     type=click.Choice(["mitsuba", "cycles", "pbrt", "json"]),
     help="For which renderer.",
 )
-@click.option("-o", "--output", type=FILE, help="Write here instead of to stdout.")
+@click.option("-o", "--output", type=FILE_OR_STDOUT, help="Write here instead of to stdout (-).")
 def command(scene: str, target: str, output: Path | None) -> int:
     """Write a scene for another renderer: a script for its own Python, `python SCRIPT OUT.exr`, a file of pbrt-v4, or plain JSON.
 

@@ -14,7 +14,7 @@ import click
 
 from fogproof.cli.answer_timeout import answer_timeout
 from fogproof.cli.terminal import requests_on_stdin
-from fogproof.cli.values import FILE
+from fogproof.cli.values import FILE_OR_STDOUT, NAMED
 from fogproof.errors import FogproofError, InvalidInputError, TooLargeError, shorten
 from fogproof.golden import Entry, golden_entries, to_c, to_csv, to_json_document, to_npz
 from fogproof.input_files import read_requests
@@ -30,10 +30,13 @@ _TOLD = 10  # bad lines
 @click.argument("quantities", nargs=-1, metavar="[QUANTITY]...")
 @click.option("--format", "kind", type=click.Choice(list(FORMATS)), default="json", show_default=True)
 @click.option(
-    "--requests", metavar="FILE|-", help="Lines of JSON as for `fogproof oracle`: the questions to be answered."
+    "--requests",
+    metavar="FILE|-",
+    type=NAMED,
+    help="Lines of JSON as for `fogproof oracle`: the questions to be answered.",
 )
 @answer_timeout
-@click.option("-o", "--output", metavar="FILE", type=FILE, help="Where to write, stdout unless given.")
+@click.option("-o", "--output", metavar="FILE", type=FILE_OR_STDOUT, help="Where to write, stdout (-) unless given.")
 def command(quantities: tuple[str, ...], kind: str, requests: str | None, timeout: float, output: Path | None) -> int:
     """Write reference values with error bounds and conventions, for test suites that run without fogproof.
 
@@ -64,7 +67,7 @@ def _answered(path: str, quantities: Sequence[str], limits: Limits) -> list[Entr
     asked = False
     for number, line in enumerate(_lines(path), start=1):
         try:
-            request = _request(line, number == 1)
+            request = _request(line)
             if request is not None:
                 asked = True
                 entries += golden_entries(quantities, [request], limits)
@@ -84,12 +87,12 @@ def _lines(path: str) -> Iterator[bytes]:
     return iter(partial(lines.readline, Limits.bytes + 1), b"")
 
 
-def _request(line: bytes, first: bool) -> dict[str, Any] | None:
-    """Return the request of a line, None if it is empty; the first may begin with a byte order mark."""
+def _request(line: bytes) -> dict[str, Any] | None:
+    """Return the request of a line, None if it is empty; it may begin with a byte order mark, as those of joined files do."""
     if len(line) > Limits.bytes:
         raise TooLargeError(f"the line is longer than {Limits.bytes} bytes")
     try:
-        text = line.decode("utf-8-sig" if first else "utf-8")
+        text = line.decode("utf-8-sig")
     except UnicodeDecodeError:
         raise InvalidInputError("it is not UTF-8 text") from None
     if not text.strip():

@@ -13,7 +13,7 @@ import click
 
 from fogproof.cli.answer_timeout import answer_timeout
 from fogproof.cli.terminal import requests_on_stdin, say
-from fogproof.cli.values import FILE
+from fogproof.cli.values import FILE, NAMED
 from fogproof.errors import InvalidInputError
 from fogproof.input_files import read_requests
 from fogproof.oracle import Limits, schema, serve
@@ -21,7 +21,7 @@ from fogproof.quantities import quantities
 
 
 @click.command("oracle")
-@click.argument("request", metavar="REQUEST.json|-|SCENE.toml", required=False)
+@click.argument("request", metavar="REQUEST.json|-|SCENE.toml", required=False, type=NAMED)
 @click.option(
     "-o",
     "--output",

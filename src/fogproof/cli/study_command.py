@@ -11,7 +11,7 @@ from typing import Any
 
 import click
 
-from fogproof.cli.force import FORCE
+from fogproof.cli.force import FORCE, take
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
 from fogproof.cli.values import FOLDER, PLACE
@@ -34,7 +34,8 @@ from fogproof.text import duration, one_line
     default="threads",
     show_default=True,
     metavar="WHERE",
-    help="threads, processes, or dask://host:port of a Dask scheduler; results do not depend on it.",
+    help="threads, processes, or dask://host:port of a Dask scheduler; results do not depend on it. "
+    "Estimators of your own are never drawn in threads: they may end the process.",
 )
 @click.option("--workers", type=click.IntRange(min=1), help="Threads or processes; one a core by default.")
 @click.option(
@@ -63,12 +64,15 @@ def command(
     \b
     Example:  fogproof study studies/lecture.toml -o runs/lecture
     """
-    from fogproof.reports import prepare_folder, read_record, write_report
+    from fogproof.reports import REPORT, read_record, write_report
     from fogproof.study import read_study, run_study
+    from fogproof.study.trial import has_own
 
     called = shlex.join(["fogproof", *sys.argv[1:]])
     plan = read_study(study)
-    prepare_folder(folder, force=force)
+    if executor == "threads" and has_own(plan):
+        executor = "processes"
+    take(folder, REPORT, force)
     with interruptible() as stop:
         record = run_study(
             plan, folder, executor=executor, workers=workers, against=against, salvage=salvage, command=called
@@ -173,9 +177,15 @@ def _explain(record: dict[str, Any]) -> None:
                     say(f"\n{place}: rejected, {finding['check']}: {finding['message']}", err=True)
             if estimator["warning"] and estimator["points"] == "random":
                 say(f"\n{place}: {estimator['warning']}", err=True)
+    lost: dict[tuple[str, str], list[dict[str, Any]]] = {}
     for failure in record["failures"]:
-        place = f"batch {failure['batch']} of {failure['scene']} / {failure['estimator']}"
-        say(f"\n{place} failed {failure['attempts']} times: {failure['error']}", err=True)
+        lost.setdefault((failure["scene"], failure["estimator"]), []).append(failure)
+    for (scene_name, name), failures in lost.items():
+        first, more = max(failures, key=lambda failure: int(failure["attempts"])), len(failures) - 1
+        place = one_line(f"{scene_name} / {name}")
+        others = f", and {more} more of {place}" if more else ""
+        what = f"batch {first['batch']} of {place} failed {first['attempts']} times: {first['error']}"
+        say(f"\n{what}{others}", err=True)
     if record["advice"]:
         say(f"\n{record['advice']}", err=True)
     if record["mixed_environments"]:

@@ -63,11 +63,35 @@ class _Path(click.Path):
         return super().convert(value, param, ctx)
 
 
+class _Output(_Path):
+    """A file to write; with `dash` also "-", which is stdout and stands for None."""
+
+    def __init__(self, dash: bool) -> None:
+        super().__init__(path_type=Path, dir_okay=False, readable=False)
+        self._dash = dash
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Return the path, None for stdout, or say what stands in its way."""
+        if os.fspath(value) == "-":
+            if self._dash:
+                return None
+            self.fail("must be a file: an image does not go to stdout; for a file called so, write ./-", param, ctx)
+        if os.fspath(value).endswith(("/", os.sep)):
+            self.fail(f"{value} is the name of a folder; add that of a file", param, ctx)
+        return super().convert(value, param, ctx)
+
+
 FOLDER = _Path(path_type=Path, file_okay=False)
 """A folder to write into, which may not be there yet."""
 
-FILE = _Path(path_type=Path, dir_okay=False, readable=False)
+FILE = _Output(dash=False)
 """A file to write, or a device."""
+
+FILE_OR_STDOUT = _Output(dash=True)
+"""The same, or "-" for stdout, which comes as None."""
+
+NAMED = _Path(readable=False)
+"""The name of what is read, as a text; "-" may mean stdin."""
 
 PLACE = _Path(path_type=Path)
 """What is read: whether it is there, and what it is, is said where it is opened."""

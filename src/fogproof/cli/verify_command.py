@@ -18,6 +18,7 @@ from fogproof.cli.terminal import say
 from fogproof.cli.values import FOLDER, PROBABILITY, SECONDS
 from fogproof.text import one_line, p_value
 from fogproof.verify import ALPHA, Result, exit_code, record, reproduce, run, select, shares
+from fogproof.verify.selection import require_listed
 
 
 @click.command("verify")
@@ -43,7 +44,10 @@ from fogproof.verify import ALPHA, Result, exit_code, record, reproduce, run, se
 )
 @click.option("--twins", is_flag=True, help="Run every broken twin as well: the same checks must reject it.")
 @click.option(
-    "--time-limit", type=SECONDS, metavar="SECONDS", help="Longest a case may take; one that takes longer is an error."
+    "--time-limit",
+    type=SECONDS,
+    metavar="SECONDS",
+    help="Longest a case may take, and listing those of a file; one that takes longer is an error.",
 )
 @FORCE
 @click.option("--json", "as_json", is_flag=True, help="Print the record of the run as JSON instead of rows.")
@@ -67,6 +71,8 @@ def command(
     \b
     Example:  fogproof verify directions 'mitsuba/hg*' --report build/report
     """
+    if time_limit is not None:
+        require_listed(cases, time_limit)
     chosen = select(cases)
     if folder is not None:
         from fogproof.reports import REPORT

@@ -72,10 +72,11 @@ def command(
     from fogproof.zoo.matrix import counts, line, summary
     from fogproof.zoo.running import ZooLog, run_zoo
 
+    if folder is not None:  # before thousands of mutants are made
+        take(folder, ("zoo.md",), force)
     chosen = select(bugs, one_in)
     log, rows = None, []
     if folder is not None:
-        take(folder, ("zoo.md",), force)
         settings = {"samples": samples, "alpha": alpha, "others": others}
         log = ZooLog(folder / "zoo.jsonl", settings)
         names = {bug.name for bug in chosen}

@@ -21,6 +21,7 @@ class Discrete:
     n: float
 
     shape = ()
+    whole = (True,)
 
     def __post_init__(self) -> None:
         whole = isinstance(self.n, int) and not isinstance(self.n, bool) and self.n >= 1

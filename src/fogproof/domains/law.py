@@ -7,6 +7,7 @@ every point.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
@@ -35,7 +36,10 @@ class Law:
 
 @runtime_checkable
 class Domain(Protocol):
-    """Where samples live, and the measure that their density refers to. Any object with these parts is a domain."""
+    """Where samples live, and the measure that their density refers to. Any object with these parts is a domain.
+
+    One whose points hold whole numbers says so by a further part, `whole`: one truth for each number of a point.
+    """
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -53,6 +57,11 @@ class Domain(Protocol):
 
     def law(self, pilot: np.ndarray) -> Law:
         """Return a known law; on unbounded domains the points `pilot` set its scale."""
+
+
+def whole_columns(domain: Domain) -> tuple[bool, ...]:
+    """Return which numbers of a point are whole ones: they are exact, and between two of them there is nothing."""
+    return tuple(getattr(domain, "whole", (False,) * math.prod(domain.shape)))
 
 
 def at_the_ends(slack: float) -> float:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fogproof.domains.law import Domain, Law
+from fogproof.domains.law import Domain, Law, whole_columns
 from fogproof.errors import InvalidValueError
 
 
@@ -33,6 +33,11 @@ class Product:
     def shape(self) -> tuple[int, ...]:
         """All columns."""
         return (sum(math.prod(part.shape) for part in self.parts),)
+
+    @property
+    def whole(self) -> tuple[bool, ...]:
+        """Which columns hold whole numbers, which no rounding moves."""
+        return tuple(one for part in self.parts for one in whole_columns(part))
 
     @property
     def measure(self) -> float:

@@ -14,6 +14,10 @@ FINE = 1e-5
 """Relative rounding of storage up to which steps of 1/255 can be told."""
 
 
+BRIGHT = 1e30
+"""No radiance [W/(m^2 sr)] that anybody renders; numbers whose bytes are in the wrong order are of all sizes."""
+
+
 def faults(picture: RenderedImage, found: Residuals, brightest: float, alpha: float) -> list[Finding]:
     """Return what is wrong with an image at first sight.
 
@@ -28,13 +32,19 @@ def faults(picture: RenderedImage, found: Residuals, brightest: float, alpha: fl
 
 def notes(picture: RenderedImage) -> list[str]:
     """Return in words what is odd and no fault by itself."""
+    told = list(picture.notes)
+    size = np.where(np.isfinite(picture.value), np.abs(picture.value), 0.0)
+    if size.max() > BRIGHT:
+        place = _place(int(np.argmax(size)), picture)
+        told.append(f"values are as large as {size.max():.3g}, at {place}: is the file's order of bytes right?")
     negative = picture.value < 0
     if not negative.any():
-        return []
+        return told
     least, place = float(np.nanmin(picture.value)), _place(int(np.nanargmin(picture.value)), picture)
     return [
+        *told,
         f"{int(negative.sum())} values are negative, the least {least:.3g} at {place}: no radiance is; weights of both signs and"
-        " filters with negative lobes make such, and bets on brightness are off"
+        " filters with negative lobes make such, and bets on brightness are off",
     ]
 
 
@@ -42,7 +52,10 @@ def _numbers(picture: RenderedImage) -> Finding | None:
     bad = ~np.isfinite(picture.renders)
     if not bad.any():
         return None
-    kinds = {"NaN": int(np.isnan(picture.renders).sum()), "infinite": int(np.isinf(picture.renders).sum())}
+    kinds = {
+        "NaN": int(np.isnan(picture.renders).sum()),
+        "infinite": int(np.isinf(picture.renders).sum()),
+    }
     counts = ", ".join(f"{count} {name}" for name, count in kinds.items() if count)
     where = _place(int(np.argmax(bad.any(axis=0))), picture)
     message = f"{counts} of {picture.renders.size} values, the first at {where}; the others are compared"

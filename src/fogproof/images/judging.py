@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from fogproof.checks.statistics.means import mean_test
 from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.statistics.tails import normal_quantile
 from fogproof.checks.verdict import EffectInterval, Finding, Verdict
-from fogproof.errors import InvalidValueError
+from fogproof.errors import InvalidInputError, InvalidValueError
 from fogproof.images.dependence import Dependence, dependence, in_cells
 from fogproof.images.faults import faults, notes
 from fogproof.images.picture import RenderedImage
@@ -24,6 +25,10 @@ from fogproof.scene import ImageScene
 ALPHA = 1e-6
 TOLERANCE = 1e-5
 """Relative error that does not matter: sums of many samples in single precision are off by about as much."""
+
+
+EXACT = 0.5
+"""Share of pixels that are the reference, to within what is allowed, from which on equal renders have no noise."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +78,15 @@ def judge(
     same = len(picture.renders) > 1 and all(
         np.array_equal(r, picture.renders[0], equal_nan=True) for r in picture.renders
     )
-    if same:
+    exact = same and np.mean(np.abs(found.difference) <= found.allowed) >= EXACT
+    if not exact:
+        for one in shown:
+            _require_different(one)
+    if same and not exact:  # they count as one, whose pixels tell by their scatter whether there is noise
+        unchecked.append("all renders are the same, so they count as one: is each given a seed of its own?")
+        picture = replace(picture, renders=picture.renders[:1])
+        how = dependence(picture.renders, found)
+    if exact:
         findings.append(_exactly(found))
     elif how.kind == "shared":
         findings += _by_render(picture, found, alpha)
@@ -84,6 +97,17 @@ def judge(
         findings += pooled
         unchecked += more
     return findings, unchecked, how
+
+
+def _require_different(picture: RenderedImage) -> None:
+    """Refuse files that are given as independent renders and are equal: by the scatter of such, anything looks certain."""
+    seen: dict[bytes, str] = {}
+    for path, pixels in zip(picture.paths, picture.renders if picture.paths else (), strict=True):
+        key = hashlib.blake2b(pixels.tobytes()).digest()
+        if key in seen:
+            what = f"{seen[key]} and {path} are the same pixel by pixel, and no independent renders"
+            raise InvalidInputError(f"{what}: render each with a seed of its own, or give one of them", path)
+        seen[key] = path
 
 
 def _exactly(found: Residuals) -> Finding:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,6 +13,10 @@ from fogproof.errors import InvalidInputError
 from fogproof.images.formats import format_of
 from fogproof.scene.cameras import Film
 
+LARGEST = 1e70
+"""Values that are larger are none: their fourth powers are no numbers."""
+_TOLD = 8
+"""Channels that are named where more are left out."""
 ORDERS = (("R", "G", "B"), ("Y",), ("V",), ("L",), ("C0", "C1", "C2"))
 
 
@@ -25,6 +29,7 @@ class RenderedImage:
     rounding  relative error of storing a number: half a unit in the last place; and the smallest step near 0
     names     of the channels
     paths     of the files
+    notes     in words, what of the files is not looked at
     """
 
     renders: np.ndarray
@@ -32,6 +37,7 @@ class RenderedImage:
     rounding: tuple[float, float]
     names: tuple[str, ...]
     paths: tuple[str, ...]
+    notes: tuple[str, ...] = ()
 
     @property
     def value(self) -> np.ndarray:
@@ -54,6 +60,7 @@ def read_picture(
     variances: list[np.ndarray] = []
     roundings: list[tuple[float, float]] = []
     names: tuple[str, ...] = ()
+    notes: dict[str, None] = {}
     for path in map(Path, paths):
         found = format_of(path).read(path)
         own = _names(path, found, channels, layer)
@@ -73,8 +80,19 @@ def read_picture(
         layers = [_variance_name(found, name) for name in own]
         if all(layers):
             variance = np.stack([found[name] for name in layers if name], axis=-1).astype(np.float64)
-            variances.append(_framed(path, variance, film) / (samples or 1))
-        parts.append(value.astype(np.float64))
+            if np.all(variance >= 0):
+                variances.append(_framed(path, variance, film) / (samples or 1))
+            else:
+                wrong = np.count_nonzero(~(variance >= 0))
+                notes[f"{path}: {wrong} values of its variance layers are negative or NaN: they are not used"] = None
+        if beside := [name for name in found if name not in own and name not in layers]:
+            notes[f"channels that are not looked at: {_listed(beside)}"] = None
+        value = value.astype(np.float64)
+        huge = np.isfinite(value) & (np.abs(value) > LARGEST)
+        if huge.any():
+            notes[f"{path}: {np.count_nonzero(huge)} values beyond {LARGEST:g} count as infinite"] = None
+            value[huge] = np.inf
+        parts.append(value)
     renders = np.stack(parts)
     copies = renders.shape[-1] > 1 and channels is None and (renders == renders[..., :1])[np.isfinite(renders)].all()
     if copies:  # a grey scene rendered in colour: one channel says it all
@@ -82,7 +100,7 @@ def read_picture(
     stated = None
     if len(variances) == len(parts):
         stated = np.mean(variances, axis=0)[..., : renders.shape[-1]] / len(parts)
-    return RenderedImage(renders, stated, max(roundings), names, tuple(str(path) for path in paths))
+    return RenderedImage(renders, stated, max(roundings), names, tuple(map(str, paths)), tuple(notes))
 
 
 def _names(path: Path, found: dict[str, np.ndarray], channels: int | None, layer: str) -> tuple[str, ...]:
@@ -102,10 +120,23 @@ def _names(path: Path, found: dict[str, np.ndarray], channels: int | None, layer
             whole = (not prefix or prefix.endswith(".")) and all(one in names for one in wanted)
             if whole and (channels is None or len(wanted) == channels):
                 return tuple(f"{layer}.{one}" if layer else one for one in wanted)
-    if (channels is None and len(names) == 1) or (channels is not None and len(names) == channels):
-        return tuple(sorted(f"{layer}.{one}" if layer else one for one in names))
+    if channels is not None and len(names) == channels:
+        return tuple(f"{layer}.{one}" if layer else one for one in sorted(names, key=_by_number))
     needed = f"the scene has {channels} channels" if channels else "an image has Y, or R, G and B"
-    raise InvalidInputError(f"{path}: has channels {', '.join(sorted(found)) or 'none'}; {needed}", str(path))
+    raise InvalidInputError(f"{path}: has channels {_listed(found) or 'none'}; {needed}", str(path))
+
+
+def _by_number(name: str) -> list[tuple[int, str]]:
+    """Return a key by which C10 comes after C2."""
+    return [
+        (int(part), "") if part.isdigit() and part.isascii() else (-1, part) for part in re.split(r"([0-9]+)", name)
+    ]
+
+
+def _listed(names: Iterable[str]) -> str:
+    ordered = sorted(names, key=_by_number)
+    more = f" and {len(ordered) - _TOLD} more" if len(ordered) > _TOLD else ""
+    return ", ".join(ordered[:_TOLD]) + more
 
 
 def _variance_name(found: dict[str, np.ndarray], name: str) -> str | None:

@@ -50,7 +50,7 @@ def _replies(lines: list[bytes | None], rigorous: bool, limits: Limits) -> Itera
             texts.append(TooLargeError(rule))
             continue
         try:
-            texts.append(line.decode("utf-8"))
+            texts.append(line.decode("utf-8-sig"))  # files that were joined bring a mark each
         except UnicodeDecodeError as error:
             texts.append(InvalidInputError(f"request is not UTF-8 text: {error.reason} at byte {error.start}"))
     answers = answer_lines([text for text in texts if isinstance(text, str)], rigorous, limits)

@@ -16,7 +16,10 @@ from fogproof.checks import Finding, Verdict, check_estimator, check_family, che
 from fogproof.checks.digits import digits_of
 from fogproof.checks.subject import Precision, Subject
 from fogproof.contracts import Draw
+from fogproof.domains import Discrete
 from fogproof.errors import InvalidInputError, NotInstalledError, SubjectError
+from fogproof.pipe.columns import columns_of
+from fogproof.pipe.entries import with_its_table
 from fogproof.pipe.estimator import PipeEstimator, draws_of
 from fogproof.pipe.faults import BROKEN, ProgramError
 from fogproof.pipe.files import read_rows
@@ -116,7 +119,7 @@ def check_file(path: str | Path, spec: str | Path | Mapping[str, Any], settings:
 
 def _of_file(path: Path, base: Spec, settings: Settings) -> Checked:
     rows, named = read_rows(path, len(base.columns), base.type)
-    columns = _columns(path, base, rows.shape, named)
+    columns = columns_of(path, base, rows.shape, named)
     precision: Precision = base.precision or ("float32" if rows.dtype == np.float32 else "float64")
     if not base.samples_points:
         options: dict[str, Any] = {
@@ -126,14 +129,16 @@ def _of_file(path: Path, base: Spec, settings: Settings) -> Checked:
         }
         return Checked(check_estimator(draws_of(rows, columns), expectation_of(base), **options))
     truth = truth_of(base, precision)
-    hint = misread(truth.domain, rows, columns)
+    hint = misread(truth.domain, rows, columns, truth.density and partial(_value, truth))
     if hint:
         return Checked(failed(ProgramError(f"the file {hint[0]}", hint[1]), settings))
     draw = draw_of(rows, columns, truth.domain)
+    if truth.density is None and draw.pdf is None:
+        fix = "give a column of densities, or phase, medium or table in the spec"
+        raise InvalidInputError(f"{path} has no densities; {fix}", "columns")
+    if truth.density is None and isinstance(truth.domain, Discrete):
+        truth, draw = with_its_table(truth, draw, Recorded(draw).pilot) or (truth, draw)
     if truth.density is None:
-        if draw.pdf is None:
-            fix = "give a column of densities, or phase, medium or table in the spec"
-            raise InvalidInputError(f"{path} has no densities; {fix}", "columns")
         subject = _subject(base, truth, _never, _never, precision)
         with np.errstate(all="ignore"):  # what is infinite or undefined is found, not warned of
             verdict = check_ratios(subject, draw, settings.alpha, settings.seed)
@@ -259,28 +264,6 @@ def _value(truth: KnownLaw, x: np.ndarray) -> np.ndarray:
 
 def _never(x: np.ndarray) -> np.ndarray:
     raise InvalidInputError("there is nobody to be asked for a density", "pdf")
-
-
-def _columns(path: Path, spec: Spec, shape: tuple[int, ...], named: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the names of a file's columns: those of the spec, else its own, else those of bare points or values."""
-    (rows, count), first = shape, "x" if spec.samples_points else "value"
-    bare = int(np.prod(spec.domain.shape, dtype=int)) if spec.domain is not None else 1
-    columns = spec.columns or named or (first,) * (count if not spec.samples_points else min(count, bare))
-    if len(columns) != count:
-        told = f"{len(columns)} are named" if spec.columns or named else f"a point has {bare}"
-        fix = 'name them all in the spec, as in columns = ["x", "x", "x", "pdf"]'
-        if rows == len(columns):
-            fix = "transpose it: one sample a row"
-        raise InvalidInputError(f"{path} has {count} columns, and {told}; {fix}", "columns")
-    points = columns.count("x")
-    for name in set(columns) - {"x", "weight", "value"}:
-        if columns.count(name) > 1:
-            raise InvalidInputError(f"{path} has {columns.count(name)} columns {name}; there is one at most", "columns")
-    if spec.samples_points and points != bare:
-        raise InvalidInputError(f"{path} has {points} columns x; a point of {spec.domain} has {bare}", "columns")
-    if not spec.samples_points and "value" not in columns:
-        raise InvalidInputError(f"{path} has no column value, but {', '.join(columns)}", "columns")
-    return columns
 
 
 def _parameters(spec: Spec) -> Any:

@@ -70,7 +70,8 @@ class Process:
         self._ahead = b""
         self._said, self._last, self._said_bytes = b"", b"", 0
         self.note = self.failure = ""
-        self._late, self.rest = 0, b""  # bytes that came after the end of the input; the first of what nobody asked for
+        self._late = self.extra = 0  # bytes that came after the end of the input, and all that nobody asked for
+        self.rest = b""  # the first of those
         self._ended_itself = False
 
     def send(self, data: bytes | memoryview) -> None:
@@ -167,13 +168,13 @@ class Process:
             self._child.kill()
         while self._out in self._open and (rest := self._read(_CHUNK)):
             self._unread(rest)
-        extra, self._ended_itself = len(self._ahead) + self._late, code is not None
+        self.extra, self._ended_itself = len(self._ahead) + self._late, code is not None
         self.rest = self._ahead + self.rest
         self._listen()
         for pipe in list(self._open):
             self._close(pipe)
-        if extra:
-            self.note = f"it wrote {extra} bytes more than it was asked for"
+        if self.extra:
+            self.note = f"it wrote {self.extra} bytes more than it was asked for"
         elif code is None:
             self.note = f"it did not end within {self.timeouts.end:g} s of the end of its input, and was killed"
         if code:

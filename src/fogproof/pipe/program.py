@@ -37,6 +37,10 @@ class Program:
     def __exit__(self, _kind: type[BaseException] | None, _error: object, _trace: TracebackType | None) -> None:
         self.stop()
 
+    def another(self) -> Program:
+        """Start the same program once more, for questions that may spoil it."""
+        return Program(self._command, self._timeouts)
+
     def ask(
         self, request: str, rows: np.ndarray, n: int, columns: int, seed: int, parameters: Mapping[str, float]
     ) -> np.ndarray:
@@ -118,8 +122,10 @@ class Program:
             process, self._process = self._process, None
             process.stop()
             self.said, self.failure = process.said, self.failure or process.failure
-            if not self._waiting and process.rest.startswith(b'{"n"'):
-                self.ahead = self.ahead or "answered once more than it was asked"
+            if not self._waiting and process.extra and not self.ahead:
+                again = process.rest.startswith(b'{"n"')
+                more = f"wrote {process.extra} bytes more than it was asked for: {_shown(process.rest)}"
+                self.ahead = "answered once more than it was asked" if again else more
             if process.note:
                 self.notes.append(process.note)
 

@@ -14,7 +14,9 @@ import numpy as np
 
 from fogproof.checks import Finding, Verdict, check_estimator
 from fogproof.checks.declared import unchecked
+from fogproof.checks.streams import batch_generator
 from fogproof.checks.subject import Subject, in_domain
+from fogproof.checks.telling import few_digits
 from fogproof.contracts import Draw, Reference
 from fogproof.domains import Domain, Law
 from fogproof.errors import SubjectError
@@ -31,10 +33,14 @@ _PILOT_A_CELL = 30  # points of the pilot that tell how much of q lies in a fine
 
 @dataclass(frozen=True)
 class _Cells:
-    """Cells of equal probability under a law, `side` along each axis."""
+    """Cells of equal probability under a law, `side` along each axis.
+
+    A point that has probability itself lies anywhere in its interval: the identity holds for it and that place together.
+    """
 
     law: Law
     side: int
+    rng: np.random.Generator
 
     @property
     def count(self) -> int:
@@ -50,7 +56,7 @@ class _Cells:
     def of(self, x: np.ndarray) -> np.ndarray:
         """Return the cell of each point (n,)."""
         axes = len(self.law.axes)
-        place = self.law.coordinates(x, np.full((len(x), axes), 0.5)) * self.side
+        place = self.law.coordinates(x, self.rng.random((len(x), axes))) * self.side
         corner = np.minimum(place.astype(np.intp), self.side - 1)
         return np.asarray(np.ravel_multi_index(tuple(corner.T), (self.side,) * axes))
 
@@ -70,6 +76,9 @@ def check_ratios(subject: Subject, draw: Draw, alpha: float, seed: int | None) -
         _promise("domain", outside, f"a point of {subject.domain}", draw.x, "outside the domain"),
         _promise("positive pdf", bad, "of positive finite density", draw.pdf, "claimed hole"),
     ]
+    few = few_digits(subject, draw.x[outside])
+    if few:
+        promises[0] = replace(promises[0], message=promises[0].message + few, cause="coarse numbers")
     negative = float(np.mean(draw.pdf < 0))
     if negative > 0:
         told = " (are they logarithms?)" if negative > _LOGARITHMS else ""
@@ -79,7 +88,7 @@ def check_ratios(subject: Subject, draw: Draw, alpha: float, seed: int | None) -
     cut = n // 4
     law = subject.domain.law(draw.x[:cut][~at[:cut]])
     side = max(1, math.floor((cut / _PILOT_A_CELL) ** (1 / len(law.axes))))
-    cells = _Cells(law, side)
+    cells = _Cells(law, side, batch_generator(seed or 0, "cells", 0, 0))  # no stream that the samples may be made of
     pilot = np.bincount(cells.of(draw.x[:cut][~at[:cut]]), minlength=cells.count).astype(float)
     pilot[(pilot < _FEW) | cells.endless(subject.domain)] = 0.0  # where ratios have no bound
     if not pilot.any():

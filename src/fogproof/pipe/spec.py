@@ -6,7 +6,6 @@ A text "$g" stands for the parameter g, wherever a number may: so one file serve
 from __future__ import annotations
 
 import inspect
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,7 +15,7 @@ from fogproof import domains
 from fogproof.checks.subject import Precision
 from fogproof.domains import Domain
 from fogproof.errors import InvalidInputError, InvalidValueError, shorten
-from fogproof.input_files import read_text
+from fogproof.input_files import parse_toml, read_text
 from fogproof.pipe.protocol import ESTIMATOR_COLUMNS, SAMPLER_COLUMNS
 from fogproof.pipe.tables import Interpolation
 from fogproof.scene import AnyMedium, PhaseFunction, Ray, Scene
@@ -135,8 +134,8 @@ _OF_SAMPLERS = (
 def read_table(path: str | Path, what: str = "the spec file") -> dict[str, Any]:
     """Return the table of a TOML file."""
     try:
-        return tomllib.loads(read_text(path, what))
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
+        return parse_toml(read_text(path, what))
+    except (ValueError, RecursionError) as error:
         raise InvalidInputError(f"{path} is not valid TOML: {error}", str(path)) from None
 
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 import difflib
 import json
 import math
-import tomllib
 from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
@@ -17,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from fogproof.errors import FogproofError, InvalidInputError, InvalidValueError, shorten
-from fogproof.input_files import parse_json, read_text
+from fogproof.input_files import parse_json, parse_toml, read_text
 from fogproof.scene.image_scenes import ImageScene
 from fogproof.scene.scenes import Scene
 
@@ -62,8 +61,8 @@ def _table(path: Path) -> dict[str, Any]:
             raise InvalidInputError(f"{path}: must be a table of keys, got {shorten(table)}", str(path))
         return table
     try:
-        table = tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
+        table = parse_toml(text)
+    except (ValueError, RecursionError) as error:
         raise InvalidInputError(f"{path} is not valid TOML: {error}", str(path)) from None
     if isinstance(table.get("scenes"), list):
         raise InvalidInputError(f"{path} is a study, not a scene: `fogproof study {path} -o DIR` runs it", "scenes")

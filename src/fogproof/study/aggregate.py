@@ -15,6 +15,7 @@ import numpy as np
 from fogproof.checks.statistics.moments import Moments
 from fogproof.study.batches import COLUMNS, TAIL_SHARE
 from fogproof.study.cells import Cell
+from fogproof.study.fixed_work import over_fixed_work
 from fogproof.study.plan import Batches, BatchStretch
 from fogproof.study.stored_batches import Row
 
@@ -37,6 +38,7 @@ class Level:
     wall        [s] a realisation, the median over the batches
     batches     how many there are
     cpu_total   [s] of all of them
+    over_fixed  (groups, columns) logarithms of one estimate's time over that of fixed work, see `over_fixed_work`
     """
 
     count: int
@@ -49,6 +51,7 @@ class Level:
     wall: float
     batches: int
     cpu_total: float
+    over_fixed: np.ndarray
 
     @property
     def complete(self) -> bool:
@@ -78,6 +81,7 @@ class _Handful:
     rows          (.., columns) the moments of replicates or parts of them, and `replicate` which
     squares       (columns,) moments of (X - reference)^2
     realisations, costs, cpu, wall  (batches,)
+    fixed         (batches, sorts)
     round         (batches,) that they were drawn in
     tail          the largest |X - reference| down to `least`, the largest of the batches' smallest
     tails_known   whether every batch that keeps a tail has one
@@ -90,6 +94,7 @@ class _Handful:
     costs: np.ndarray
     cpu: np.ndarray
     wall: np.ndarray
+    fixed: np.ndarray
     round: np.ndarray
     tail: np.ndarray
     least: float
@@ -103,8 +108,8 @@ def _level(own: Iterator[Row], stretch: BatchStretch) -> Level:
         parts.append(_handful(group, stretch))
     starts = np.flatnonzero(np.diff(np.concatenate([part.replicate for part in parts]), prepend=-1))
     squares = merged(np.stack([part.squares for part in parts]), np.array([0]))[0]
-    names = ("realisations", "costs", "cpu", "wall", "round")
-    n, costs, cpu, wall, rounds = (np.concatenate([getattr(p, name) for p in parts]) for name in names)
+    names = ("realisations", "costs", "cpu", "wall", "fixed", "round")
+    n, costs, cpu, wall, fixed, rounds = (np.concatenate([getattr(p, name) for p in parts]) for name in names)
     took, drawn = (np.bincount(rounds, weights, stretch.rounds) for weights in (cpu, n))
     known, least = all(part.tails_known for part in parts), max(part.least for part in parts)
     tail = np.sort(np.concatenate([part.tail for part in parts]))
@@ -123,6 +128,7 @@ def _level(own: Iterator[Row], stretch: BatchStretch) -> Level:
         float(np.median(wall / n)),
         len(n),
         float(cpu.sum()),
+        over_fixed_work(stretch.realisations * cpu / n, fixed),
     )
 
 
@@ -151,6 +157,7 @@ def _handful(group: list[Row], stretch: BatchStretch) -> _Handful:
         np.array([np.nan if row[3] is None else row[3] for row in group]),
         np.array([row[5] for row in group]),
         np.array([row[4] for row in group]),
+        np.frombuffer(b"".join(row[6] for row in group)).reshape(len(group), -1),
         stretch.round_of(np.array([row[0] for row in group])),
         largest,
         least,

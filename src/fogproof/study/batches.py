@@ -13,6 +13,7 @@ from fogproof.checks.streams import batch_generator
 from fogproof.contracts import Estimator
 from fogproof.study.cells import SOBOL_CALL, Cell, cells_of_text
 from fogproof.study.drawn import numbers_of
+from fogproof.study.fixed_work import time_fixed_work
 from fogproof.study.plan import Batch
 from fogproof.study.sobol import SobolSequence
 
@@ -38,6 +39,7 @@ class BatchResult:
     tail     the largest |X - reference|, rising
     cost     mean look-ups of a realisation, NaN where the estimator does not count them
     wall, cpu  seconds that its calls take; of this thread's processor time
+    fixed    (sorts,) processor seconds of the fixed work beside it
     """
 
     index: int
@@ -46,6 +48,7 @@ class BatchResult:
     cost: float
     wall: float
     cpu: float
+    fixed: np.ndarray
 
 
 def run_batch(text: str, folder: str, batch: Batch, reference: float) -> BatchResult:
@@ -78,7 +81,7 @@ def draw_batch(cell: Cell, batch: Batch, reference: float) -> BatchResult:
     del x, deviations, squares
     if cpu < _SHORT:
         wall, cpu = _again(cell, estimator, batch, cpu)
-    return BatchResult(batch.number, moments, tail, cost, wall, cpu)
+    return BatchResult(batch.number, moments, tail, cost, wall, cpu, time_fixed_work())
 
 
 def moments_of(x: np.ndarray) -> np.ndarray:

@@ -16,6 +16,7 @@ from fogproof.errors import FogproofError, InvalidInputError, UnsupportedError
 from fogproof.study.drawn import numbers_of
 from fogproof.study.files import Study, StudyScene, study_of
 from fogproof.study.methods.method import Method
+from fogproof.study.methods.own import Own
 from fogproof.study.methods.table import name_of
 from fogproof.study.sobol import SobolSequence
 
@@ -126,15 +127,24 @@ def cells_of(study: Study) -> list[Cell]:
     return cells
 
 
-def prepare(cells: list[Cell]) -> None:
-    """Ask the oracle and call every estimator once: what cannot run says so before anything runs."""
+def prepare(cells: list[Cell], tried: bool = False) -> None:
+    """Ask the oracle and call every estimator once: what cannot run says so before anything runs.
+
+    tried  whether one's own have been called elsewhere (`trial`), and are not called here
+    """
     for cell in cells:
         try:
             _ = cell.reference
-            cell.estimator(cell.counts[0])
+            if not (tried and isinstance(cell.method, Own)):
+                cell.estimator(cell.counts[0])
         except FogproofError as error:
-            place = f"{cell.study.origin}: scene {cell.scene.name!r}, {cell.name}"
-            raise InvalidInputError(f"{place}: {error}", error.path) from None
+            raise told_of(cell.study, cell.scene, cell.name, error) from None
+
+
+def told_of(study: Study, scene: StudyScene, name: str, error: FogproofError) -> InvalidInputError:
+    """Return what is wrong with an estimator of a scene; an error that bears its name says it once."""
+    what = str(error).removeprefix(f"{name}: ")
+    return InvalidInputError(f"{study.origin}: scene {scene.name!r}, {name}: {what}", error.path)
 
 
 @lru_cache(maxsize=4)

@@ -19,6 +19,7 @@ from fogproof.study.progress import Progress
 from fogproof.study.record import Circumstances, make_record, read_results
 from fogproof.study.run import draw_missing
 from fogproof.study.store import opened
+from fogproof.study.trial import try_own
 
 
 def run_study(
@@ -35,7 +36,7 @@ def run_study(
 
     KeyboardInterrupt goes on after the results of what has been drawn are written.
 
-    executor  "threads", "processes" or "dask://host:port"
+    executor  "threads", "processes" or "dask://host:port"; in threads of this process one's own estimator may end it
     workers   threads or processes; None for one a core
     against   folder or results.json of an earlier run that this one is compared with
     salvage   whether a damaged store is put aside, and what can be read of it used
@@ -44,9 +45,14 @@ def run_study(
     folder = Path(folder)
     started, clock = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"), time.perf_counter()
     before = None if against is None else read_results(Path(against))
+    elsewhere = executor != "threads"
+    if elsewhere:
+        try_own(study)
     cells = cells_of(study)
     batches = batches_of(cells)
-    prepare(cells)  # what cannot run leaves no folder behind that another study, the mended one, would not fit into
+    prepare(
+        cells, tried=elsewhere
+    )  # what cannot run leaves no folder behind that another study, the mended one, would not fit into
     with opened(folder, study, salvage) as store:
         done = store.done()
         missing = len(batches) - len(done)

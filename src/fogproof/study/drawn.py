@@ -15,8 +15,9 @@ def numbers_of(name: str, drawn: Any, n: int) -> tuple[np.ndarray, float]:
     draws = drawn if isinstance(drawn, Draws) else Draws(drawn)
     try:
         values = np.asarray(draws.value)
-        if values.dtype.kind == "c":
-            raise TypeError(f"must return real numbers, got {values.dtype}")
+        if values.dtype.kind in "cSUmMV":  # NumPy would drop a part of some, and read others as numbers
+            fix = "; return the real or the imaginary part" if values.dtype.kind == "c" else ""
+            raise SubjectError(f"{name}: draw must return real numbers, got dtype {values.dtype}{fix}", "draw")
         x = np.ascontiguousarray(values, dtype=np.float64)
         cost = float("nan") if draws.cost is None else float(np.mean(draws.cost))
     except (TypeError, ValueError, OverflowError) as error:

@@ -8,21 +8,20 @@ from __future__ import annotations
 
 import hashlib
 import json
-import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from fogproof.checks.arguments import alpha_of
 from fogproof.errors import FogproofError, InvalidInputError, InvalidValueError, shorten
-from fogproof.input_files import read_text
+from fogproof.input_files import parse_toml, read_text
 from fogproof.scene.files import read_fields
 from fogproof.study.media import sha256_of
 from fogproof.study.methods.table import OWN, MethodField
 from fogproof.study.own_code import NAME, digest_of
 from fogproof.study.question import Question
-from fogproof.validate import number
 
 LARGEST_COUNT = 1 << 40
 LARGEST_REPLICATES = 1 << 24
@@ -84,7 +83,7 @@ class Study:
         for name, least in (("replicates", 4), ("batch", 64), ("seed", 0)):
             if not least <= getattr(self, name) < 1 << 63:
                 raise InvalidValueError(name, f"must be a whole number >= {least}", getattr(self, name))
-        number("alpha", self.alpha, "must lie in (0, 1)", 0, 1, open_ends=True)
+        alpha_of(self.alpha)
         names = [scene.name for scene in self.scenes]
         if not names:
             raise InvalidValueError("scenes", "must not be empty", [], "add a [[scenes]] table")
@@ -103,8 +102,8 @@ def read_study(path: str | Path) -> Study:
     path = Path(path)
     text = read_text(path, "the study file")
     try:
-        table = tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
+        table = parse_toml(text)
+    except (ValueError, RecursionError) as error:
         raise InvalidInputError(f"{path} is not valid TOML: {error}", str(path)) from None
     if "scenes" not in table and "ray" in table:
         raise InvalidInputError(

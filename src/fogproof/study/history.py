@@ -1,46 +1,42 @@
 """Two runs compared, before and after a change: what became slower, noisier or biased, beyond noise.
 
-Machines have moods: the common change of all estimators' times is taken out, and how much the times of the others wander says how
-much a single one must change to be noticed.
+How a change of speed is told from a change of the machine, see `speed_change`.
 """
 
 from __future__ import annotations
 
+import json
 import math
+from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-
 from fogproof.checks.statistics.moments import Moments
-from fogproof.checks.statistics.tails import normal_quantile, normal_two_sided
+from fogproof.checks.statistics.tails import normal_quantile
 from fogproof.checks.statistics.welch import difference_test
 from fogproof.study.convergence import Z
-
-_LEAST = 4
-"""Estimators that are needed to tell the machine's mood from a change of one."""
-_MAD = 1.4826
-"""From the median absolute deviation to the standard deviation of a normal law."""
+from fogproof.study.speed_change import LEAST, SpeedChange, Speeds, estimate, speed_changes
+from fogproof.study.speed_change import became as became_speed
 
 
 def compare(before: dict[str, Any], after: dict[str, Any], alpha: float = 1e-6) -> dict[str, Any]:
     """Return what changed between the records of two studies, inside one false-alarm probability alpha."""
     pairs, gone, new = _pairs(before, after)
-    mood, wander = _mood(pairs)
+    speeds = speed_changes([(old, young) for _, old, young in pairs], len(_machines(before) | _machines(after)) == 1)
     share = alpha / max(1, 3 * len(pairs))
-    changes = [_change(old, young, scene, mood, wander, share) for scene, old, young in pairs]
+    changes = [_change(*pair, speed, share) for pair, speed in zip(pairs, speeds.changes, strict=True)]
     found = {word: [_title(c) for c in changes if word in c["became"]] for word in _WORDS}
     said = [f"{word}: {', '.join(names)}" for word, names in found.items() if names]
     text = "; ".join(said) if said else "nothing changed beyond noise"
-    if sum(_time_ratio(old, young) is not None for _, old, young in pairs) < _LEAST:
-        text += f"; of less than {_LEAST} estimators a change of speed is hardly told from a mood of the machine"
+    text += _of_speeds(speeds, changes)
     return {
         "before": {
             key: before[key] for key in ("title", "started", "fogproof", "fingerprint", "digest", "environment")
         },
         "same_draws": not gone and not new and all(old["moments"] == young["moments"] for _, old, young in pairs),
         "alpha": alpha,
-        "mood": mood,
-        "wander": wander,
+        "mood": speeds.machine,
+        "wander": speeds.wander,
+        "against": speeds.against,
         "gone": gone,
         "new": new,
         "changes": changes,
@@ -49,6 +45,8 @@ def compare(before: dict[str, Any], after: dict[str, Any], alpha: float = 1e-6) 
     }
 
 
+_HARDLY = 10.0
+"""A change of speed that must be larger than this to be seen is hardly told."""
 _WORDS = ("biased", "different", "noisier", "less noisy", "slower", "faster")
 _Pair = tuple[str, dict[str, Any], dict[str, Any]]
 
@@ -63,42 +61,29 @@ def _pairs(before: dict[str, Any], after: dict[str, Any]) -> tuple[list[_Pair], 
     return pairs, gone, [" / ".join(key) for key in young if key not in old]
 
 
-def _time_ratio(old: dict[str, Any], young: dict[str, Any]) -> float | None:
-    """Return the logarithm of how much longer a realisation takes."""
-    if not (old["speed"] and young["speed"]):
-        return None
-    a, b = old["speed"]["cpu"]["value"], young["speed"]["cpu"]["value"]
-    return math.log(b / a) if a > 0 and b > 0 else None
+def _machines(record: dict[str, Any]) -> set[str]:
+    """Return the machines and versions, fogproof's own code aside, that a study was drawn with."""
+    drawn = [session["environment"] for session in record.get("sessions", ())] or [record["environment"]]
+    return {json.dumps({k: v for k, v in table.items() if k != "code"}, sort_keys=True) for table in drawn}
 
 
-def _mood(pairs: list[_Pair]) -> tuple[float, float]:
-    """Return the common factor of all times, and how far the logarithms of single ones wander from it."""
-    ratios = [ratio for _, old, young in pairs if (ratio := _time_ratio(old, young)) is not None]
-    if len(ratios) < _LEAST:
-        return 1.0, math.log(2)
-    middle = float(np.median(ratios))
-    return math.exp(middle), _MAD * float(np.median(np.abs(np.array(ratios) - middle)))
+def _of_speeds(speeds: Speeds, changes: Sequence[dict[str, Any]]) -> str:
+    """Say how small a change of speed would have been told."""
+    resolutions = [change["time"]["resolution"] for change in changes if change["time"]]
+    if speeds.against == "nothing":
+        return f"; of less than {LEAST} estimators a change of speed is hardly told from a change of the machine"
+    best, worst = (f"{min(end(resolutions), _HARDLY):.3g}" for end in (min, max))
+    told = best if best == worst else f"{best} to {worst}"
+    more = "; raise replicates to see less" if max(resolutions) >= _HARDLY else ""
+    return f"; an estimator {told} times as slow, or as fast, would have been seen{more}"
 
 
 def _change(
-    old: dict[str, Any], young: dict[str, Any], scene: str, mood: float, wander: float, alpha: float
+    scene: str, old: dict[str, Any], young: dict[str, Any], speed: Sequence[SpeedChange], alpha: float
 ) -> dict[str, Any]:
-    became = [*_biased(old, young, alpha), *_noisier(old, young, alpha)]
-    ratio = _time_ratio(old, young)
-    time = None
-    if ratio is not None:
-        own = math.hypot(*(_spread(e["speed"]["cpu"]) for e in (old, young)))
-        spread = math.hypot(own, wander)
-        off = ratio - math.log(mood)
-        if spread > 0 and normal_two_sided(off / spread) <= alpha:
-            became.append("slower" if off > 0 else "faster")
-        reach = math.exp(Z * spread)
-        time = {"value": math.exp(off), "low": math.exp(off) / reach, "high": math.exp(off) * reach}
+    became = [*_biased(old, young, alpha), *_noisier(old, young, alpha), *became_speed(speed, alpha)]
+    time = estimate(speed, alpha) if speed else None
     return {"scene": scene, "estimator": young["name"], "became": became, "time": time, "variance": _ratio(old, young)}
-
-
-def _spread(time: dict[str, float]) -> float:
-    return math.log(time["high"] / time["low"]) / (2 * Z) if 0 < time["low"] < time["high"] else 0.0
 
 
 def _moments(estimator: dict[str, Any]) -> Moments:

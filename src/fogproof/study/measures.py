@@ -15,6 +15,7 @@ from fogproof.study.aggregate import Level, pooled
 from fogproof.study.cells import Cell
 from fogproof.study.convergence import Estimate, Floor, Order, Z, floor_of, order_of, rmse
 from fogproof.study.error_curve import error_curve, reaches_of, stays_for_good
+from fogproof.study.fixed_work import summed_up
 from fogproof.study.judgement import BY_BIAS, Judged, inherited, judge, out_of_range, resolution_of
 from fogproof.study.methods.table import kind_of, options_of
 from fogproof.study.reaching import Reach
@@ -185,13 +186,15 @@ def _speed(cell: Cell, levels: Sequence[Level], times: Sequence[Times], reaches:
         "wall": last.wall,
         "batches": last.batches,
         "cpu_total": sum(level.cpu_total for level in levels),
-        "counts": [_timing(level, time.estimate) for level, time in zip(levels, times, strict=True)],
+        "counts": [_timing(level, time) for level, time in zip(levels, times, strict=True)],
         "targets": [_target(reach) for reach in reaches],
     }
 
 
-def _timing(level: Level, time: Estimate) -> dict[str, float]:
-    return {"count": level.count, "seconds": time.value, "low": time.low, "high": time.high}
+def _timing(level: Level, times: Times) -> dict[str, Any]:
+    time = times.estimate
+    fixed = summed_up(level.over_fixed)
+    return {"count": level.count, "seconds": time.value, "low": time.low, "high": time.high, "fixed_work": fixed}
 
 
 def _target(reach: Reach) -> dict[str, Any]:

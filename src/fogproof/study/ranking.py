@@ -116,6 +116,7 @@ def _firsts(scene: Sequence[Measured], sure: float) -> list[Measured | None]:
 def _soonest(scene: Sequence[Measured], lead: str, sure: float) -> list[str]:
     """Return who is soonest to each error, in what time, and who is not to be told from it; and where the counts do not tell."""
     parts, untold = [], []
+    before = None
     firsts = [(first, _beside(scene, first, target, sure)) for target, first in enumerate(_firsts(scene, sure))]
     for (first, beside), group in groupby(zip(firsts, range(len(TARGETS)), strict=True), key=lambda pair: pair[0]):
         if first is None:
@@ -127,9 +128,11 @@ def _soonest(scene: Sequence[Measured], lead: str, sure: float) -> list[str]:
             else:
                 told.setdefault(_time(first.reaches[target]), []).append(_percent(TARGETS[target]))
         if told:
-            place = f"first, though not to be told from {_some(beside)}" if beside else "soonest"
+            again = first is before
+            place = f"{'' if again else 'first, though '}not to be told from {_some(beside)}" if beside else "soonest"
             times = ", ".join(f"{_listed(errors)} in {time}" for time, errors in told.items())
-            parts.append(f"{_inside(first)} is {place}: {times}")
+            parts.append(f"{place}: {times}" if again else f"{_inside(first)} is {place}: {times}")
+            before = first
     text = lead + "; ".join(parts)
     said = [f"{text[:1].upper() + text[1:]}."] if parts else []
     for waiting, targets in groupby(untold, key=lambda pair: pair[1]):

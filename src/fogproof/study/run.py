@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import concurrent.futures
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError, Future
 from dataclasses import dataclass, field
@@ -16,9 +16,11 @@ from fogproof.study.plan import Batch
 from fogproof.study.stored_batches import Store
 
 ATTEMPTS = 3
-"""A batch that has failed so often is given up for this run, and reported."""
+"""A batch that has failed so often is given up for this run, and reported; so is a cell that did in so many batches."""
 AHEAD = 2
 """Batches a worker has waiting, beside the one it draws."""
+
+_DIED = "the worker that drew it died"
 
 DrawBatch = Callable[[str, str, Batch, float], BatchResult]
 Advance = Callable[[Batch, "BatchResult | None"], None]
@@ -32,6 +34,8 @@ class _Work:
     suspects: deque[Batch] = field(default_factory=deque)
     running: dict[Future[BatchResult], Batch] = field(default_factory=dict)
     failed: dict[int, int] = field(default_factory=dict)
+    deadly: Counter[int] = field(default_factory=Counter)
+    """Batches of a cell that were given up because they ended their workers."""
 
     def next(self, slots: int) -> Batch | None:
         """Return the next batch to hand out, None if the workers have enough."""
@@ -63,7 +67,11 @@ def draw_missing(
     try:
         while work.waiting or work.suspects or work.running:
             while (batch := work.next(pool.slots)) is not None:
-                _hand_out(study, cells, batch, pool, work, draw)
+                if work.deadly[batch.cell] >= ATTEMPTS:
+                    store.fail(batch.number, 0, f"{_DIED} in {ATTEMPTS} other batches: this one was not tried")
+                    advance(batch, None)
+                else:
+                    _hand_out(study, cells, batch, pool, work, draw)
             ready, _ = concurrent.futures.wait(work.running, return_when=concurrent.futures.FIRST_COMPLETED)
             _collect(ready, work, store, pool, advance)
     except KeyboardInterrupt:
@@ -110,18 +118,20 @@ def _after_a_death(broken: list[Batch], work: _Work, store: Store, pool: Workers
     pool.restart()
     for batch in broken:
         if alone:
-            _again(batch, "the worker that drew it died", work, store, advance)
+            work.deadly[batch.cell] += _again(batch, _DIED, work, store, advance)
         else:
             work.suspects.append(batch)
 
 
-def _again(batch: Batch, error: str, work: _Work, store: Store, advance: Advance) -> None:
+def _again(batch: Batch, error: str, work: _Work, store: Store, advance: Advance) -> bool:
+    """Have a batch drawn again, or give it up; return whether it was given up."""
     attempts = work.failed[batch.number] = work.failed.get(batch.number, 0) + 1
     if attempts < ATTEMPTS:
         work.suspects.append(batch)
-    else:
-        store.fail(batch.number, attempts, error)
-        advance(batch, None)
+        return False
+    store.fail(batch.number, attempts, error)
+    advance(batch, None)
+    return True
 
 
 def _keep_what_is_under_way(work: _Work, store: Store) -> None:

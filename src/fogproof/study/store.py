@@ -25,6 +25,7 @@ from fogproof.study.store_faults import (
     VERSION,
     DamagedError,
     StoreError,
+    damaged,
     explained,
     require_ours,
     require_whole,
@@ -32,11 +33,13 @@ from fogproof.study.store_faults import (
 from fogproof.study.stored_batches import Store
 
 FILE = "study.sqlite"
+_HEAD = 100
+"""Bytes that the shortest file of SQLite has."""
 _TABLES = """
 create table study (key text primary key, value text not null, sum integer not null) without rowid;
 create table stretches (id integer primary key, identity text not null, replicates integer not null, sum integer not null);
 create table batches (id integer primary key, moments blob not null, tail blob not null, cost real, wall real not null,
-                      cpu real not null, sum integer not null);
+                      cpu real not null, fixed blob not null, sum integer not null);
 create table failures (id integer primary key, attempts integer not null, error text not null, sum integer not null);
 create table sessions (id integer primary key, started text not null, environment text not null, sum integer not null);
 """
@@ -57,9 +60,13 @@ def opened(folder: Path, study: Study, salvage: bool = False) -> Iterator[Store]
         if place.exists() and not os.access(place, os.W_OK):
             fix = "make the folder writable, or choose another with -o"
             raise StoreError(f"cannot write {path}: no permission to write {place}; {fix}", str(path))
+    if path.exists() and not path.is_file():
+        raise StoreError(f"{path} is no file; remove it, or choose another folder with -o", str(path))
     store = None
     try:
         try:
+            if path.exists() and path.stat().st_size < _HEAD and (folder / "results.json").exists():
+                raise damaged(path, f"it has {path.stat().st_size} bytes, though there are results")
             store = _open(path, study)
             for _ in store.rows() if salvage else ():
                 pass  # every checksum is looked at

@@ -9,7 +9,7 @@ from fogproof.errors import FogproofError
 from fogproof.study.files import differences
 
 APPLICATION = 0x666F6770  # "fogp"
-VERSION = 3
+VERSION = 4
 TABLES = {"study", "stretches", "batches", "failures", "sessions"}
 
 
@@ -45,6 +45,8 @@ def require_whole(path: Path, connection: sqlite3.Connection) -> None:
     ]  # pages that lead in a circle would be read for ever
     if verdict != "ok":
         raise damaged(path, str(verdict).replace("\n", ", "))
+    if connection.execute("select count(*) from sqlite_master where type in ('trigger', 'view')").fetchone()[0]:
+        raise damaged(path, "it holds triggers or views, which are not ours and could undo what is stored")
     tables = {row[0] for row in connection.execute("select name from sqlite_master where type = 'table'")}
     if not tables >= TABLES:
         raise damaged(path, "tables are missing")

@@ -22,10 +22,10 @@ from fogproof.study.files import Study
 from fogproof.study.plan import Batches, BatchStretch
 from fogproof.study.store_faults import FAULTS, changed, damaged, explained, gone
 
-_COLUMNS = "id, moments, tail, cost, wall, cpu, sum"
+_COLUMNS = "id, moments, tail, cost, wall, cpu, fixed, sum"
 _ROOM = 1 << 40
 """Keys a stretch has: a batch's key is the stretch's times this, plus the batch's place in the stretch."""
-Row = tuple[int, bytes, bytes, float | None, float, float]
+Row = tuple[int, bytes, bytes, float | None, float, float, bytes]
 """A batch as it is read: its number in the study, and see `BatchResult`."""
 
 
@@ -53,7 +53,7 @@ class Store:
         """Add batches, all of them or none; one that is there already stays as it is."""
         with self._faults_in_words(), self._connection:
             rows = [self._packed(result) for result in results]
-            self._connection.executemany("insert or ignore into batches values (?, ?, ?, ?, ?, ?, ?)", rows)
+            self._connection.executemany("insert or ignore into batches values (?, ?, ?, ?, ?, ?, ?, ?)", rows)
             self._connection.executemany("delete from failures where id = ?", [(row[0],) for row in rows])
         self.require_there()
 
@@ -100,7 +100,7 @@ class Store:
                         if row[0] <= last or not _whole(row, identity):
                             raise damaged(self.path, f"batch {stretch.begin + row[0] - key} is not what was written")
                         last = row[0]
-                        yield stretch.begin + row[0] - key, *row[1:6]
+                        yield stretch.begin + row[0] - key, *row[1:7]
 
     def close(self) -> None:
         """Close the file, and let others work on it."""
@@ -159,7 +159,8 @@ class Store:
                     if at < len(stretch) and _whole(row, self._identities[place]):
                         moments = np.frombuffer(row[1]).reshape(-1, len(COLUMNS))
                         cost = np.nan if row[3] is None else row[3]
-                        yield BatchResult(stretch.begin + at, moments, np.frombuffer(row[2]), cost, row[4], row[5])
+                        tail, fixed = np.frombuffer(row[2]), np.frombuffer(row[6])
+                        yield BatchResult(stretch.begin + at, moments, tail, cost, row[4], row[5], fixed)
 
     def _known(self) -> dict[str, tuple[int, int]]:
         """Return (number, replicates) of the stretches that the file was made for, by identity."""
@@ -206,7 +207,8 @@ class Store:
     def _packed(self, result: BatchResult) -> tuple[object, ...]:
         key, identity = self._key(result.index)
         cost = None if np.isnan(result.cost) else float(result.cost)
-        row = (key, result.moments.tobytes(), result.tail.tobytes(), cost, float(result.wall), float(result.cpu))
+        times = (float(result.wall), float(result.cpu), result.fixed.tobytes())
+        row = (key, result.moments.tobytes(), result.tail.tobytes(), cost, *times)
         return *row, _sum(identity, *row)
 
     @contextlib.contextmanager

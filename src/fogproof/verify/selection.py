@@ -7,10 +7,12 @@ import difflib
 import fnmatch
 import os
 from collections.abc import Iterable
+from functools import partial
 
 from fogproof.catalogue import Case, all_cases
 from fogproof.catalogue.own import is_file, own_cases, packages
-from fogproof.errors import InvalidInputError
+from fogproof.checks.limits import isolated
+from fogproof.errors import FogproofError, InvalidInputError, SubjectError
 
 
 def select(patterns: Iterable[str]) -> list[Case]:
@@ -24,6 +26,24 @@ def select(patterns: Iterable[str]) -> list[Case]:
         return [case for case in all_cases() if not case.by_name]
     with contextlib.chdir(os.curdir):  # a file of cases may go elsewhere; names that were given mean what they meant
         return _selected(patterns)
+
+
+def require_listed(patterns: Iterable[str], seconds: float) -> None:
+    """Have the cases of files and packages listed in a process of its own, or say that it takes longer than `seconds`."""
+    offered = packages()
+    for pattern in patterns:
+        origin = pattern.partition("::")[0] if is_file(pattern) else pattern.partition("/")[0]
+        if is_file(pattern) or origin in offered:
+            try:
+                isolated(partial(_list, os.getcwd(), origin), seconds)
+            except SubjectError as error:
+                raise InvalidInputError(f"{origin}: its cases cannot be listed: {error}", origin) from None
+
+
+def _list(folder: str, origin: str) -> None:
+    os.chdir(folder)
+    with contextlib.suppress(FogproofError):  # whoever reads it next says so
+        own_cases(origin)
 
 
 def _selected(patterns: list[str]) -> list[Case]:

@@ -124,7 +124,7 @@ def _searched(
         return found
     if (
         isinstance(subject.domain, Product)
-        and base.left > PLAIN
+        and base.left > _MISFIT * math.sqrt(2 * base.freedom)
         and (told := dependent(subject, subject.domain, samples, seed))
     ):
         return "correlation", told

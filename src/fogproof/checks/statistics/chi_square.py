@@ -49,13 +49,14 @@ def chi_square_along(name: str, marginal: Marginal, counts: np.ndarray, cells: i
 def _edges(marginal: Marginal, cells: int) -> np.ndarray:
     """Return the numbers of the edges between up to `cells` groups of about equal probability.
 
-    Cells of a grid are equally probable; those of a table may be anything, and few of them may have nearly all of it.
+    Cells of a grid are equally probable; those of a table may be anything: one that has more than a group should stands alone.
     """
     m = len(marginal.cdf) - 1
     if not marginal.whole:
         return np.unique(np.arange(cells + 1) * m // cells)
     inner = np.searchsorted(marginal.cdf, np.arange(1, cells) / cells)
-    return np.unique(np.concatenate([[0], np.minimum(inner, m), [m]]))
+    heavy = np.flatnonzero(np.diff(marginal.cdf) > 1 / cells)
+    return np.unique(np.concatenate([[0], np.minimum(inner, m), heavy, heavy + 1, [m]]))
 
 
 def between_worst(marginal: Marginal, at: np.ndarray, observed: np.ndarray) -> str:

@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 
 from fogproof.errors import InvalidInputError, NotInstalledError
+from fogproof.images.exr_chunks import end_of_chunks
 from fogproof.images.formats import LARGEST, Channels, too_large
-from fogproof.input_files import open_regular
+from fogproof.input_files import open_regular, size_of
 from fogproof.reports.files import write_output
 
 
@@ -35,11 +36,16 @@ def read(path: Path) -> Channels:
                 for name, channel in part.channels.items():
                     key = f"{part.header.get('name', 'part')}.{name}" if name in found else name
                     found[key] = np.asarray(channel.pixels)
+            end = end_of_chunks(file, ["tile" in str(part.header["type"]) for part in parts])
+            more = 0 if end is None else size_of(file) - end
         except InvalidInputError:
             raise
         except (RuntimeError, ValueError, TypeError, KeyError, OSError, MemoryError, UnicodeDecodeError) as error:
             reason = str(error).splitlines()[0] if str(error) else type(error).__name__
             raise InvalidInputError(f"{path}: is a broken or truncated OpenEXR file: {reason}", str(path)) from None
+    if more > 0:
+        what = f"{more} bytes follow the image, which nothing reads: it is broken, or two files were joined"
+        raise InvalidInputError(f"{path}: {what}", str(path))
     if not found:
         raise InvalidInputError(f"{path}: is broken or truncated: no channel of it can be read", str(path))
     if len({pixels.shape for pixels in found.values()}) > 1:

@@ -16,7 +16,7 @@ HEADER = re.compile(rb"(P[Ff])\s+(\d{1,9})\s+(\d{1,9})\s+([-+]?[0-9.]{1,20}(?:[e
 
 
 def read(path: Path) -> Channels:
-    """Read a grey (Pf) or coloured (PF) map; the sign of its scale is the order of bytes, its size is not applied."""
+    """Read a grey (Pf) or coloured (PF) map; the sign of its scale is the order of bytes, its size must be 1."""
     with open_regular(path, "the image") as file:
         head = HEADER.match(file.read(128))
         if head is None:
@@ -37,6 +37,9 @@ def read(path: Path) -> Channels:
             raise InvalidInputError(
                 f"{path}: the scale of a PFM is a number < 0 or > 0, its sign the byte order", str(path)
             )
+        if abs(scale) != 1:
+            what = f"its scale is {scale:g}, which some readers apply and others do not: multiply the pixels, and write 1 or -1"
+            raise InvalidInputError(f"{path}: {what}", str(path))
         file.seek(head.end())
         array = np.frombuffer(file.read(rest), "<f4" if scale < 0 else ">f4").astype(np.float32)
     value = array.reshape((rows, columns, 3) if channels == 3 else (rows, columns))[::-1]
