@@ -59,7 +59,7 @@ def diagnosed(
     if cause in {"atom"} | _CONSTANT | _STATISTICAL or (cause in _SYMPTOMS | _ZERO | _SHARES and statistical):
         try:
             with np.errstate(all="ignore"):
-                named, words = _told(subject, cause, findings, samples, seed)
+                named, words = _explained(subject, cause, findings, samples, seed)
         except OutOfTimeError:
             return cause, f"the search for what explains it was ended after {seconds:.0f} s"
         except (
@@ -72,7 +72,7 @@ def diagnosed(
     return cause, ""
 
 
-def _told(subject: Subject, cause: str, findings: Sequence[Finding], samples: int, seed: int) -> tuple[str, str]:
+def _explained(subject: Subject, cause: str, findings: Sequence[Finding], samples: int, seed: int) -> tuple[str, str]:
     """Return the cause and the words; what accounts for a share of the samples does not explain a law that is wrong beside it."""
     named, words, rest = ("", "", subject) if cause in _CONSTANT else single_points(subject, samples, seed)
     if named != "clamped" and cause != "atom" and cause not in _SHARES:
