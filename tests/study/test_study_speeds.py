@@ -1,6 +1,7 @@
 """A change of speed is told from a change of the machine: by fixed work beside the batches, else by the other estimators."""
 
 import copy
+import json
 import math
 
 import numpy as np
@@ -8,7 +9,9 @@ import pytest
 from scipy.stats import ttest_ind
 from study_fixtures import SMALL, drawn, kinds, study_from
 
+from fogproof.errors import InvalidInputError
 from fogproof.study import batches as drawing
+from fogproof.study import run_study
 from fogproof.study.fixed_work import COLUMNS, GROUPS, over_fixed_work, summed_up, time_fixed_work
 from fogproof.study.history import compare
 from fogproof.study.speed_change import ASIDE, LEAST, became, speed_changes
@@ -168,6 +171,16 @@ def test_work_of_another_version_is_not_compared(alone):
     after = times_as_slow(alone, 100)
     after["scenes"][0]["estimators"][0]["speed"]["counts"][0]["fixed_work"]["version"] += 1
     assert compare(alone, after)["against"] == "nothing"
+
+
+@pytest.mark.parametrize("value", [0, "text", None, 1e300])
+def test_a_record_that_was_changed_is_told_before_anything_is_drawn(alone, tmp_path, value):
+    before = copy.deepcopy(alone)
+    before["scenes"][0]["estimators"][0]["speed"]["counts"][0]["fixed_work"] |= {"stderr": value, "all": value}
+    (tmp_path / "results.json").write_text(json.dumps(before))
+    with pytest.raises(InvalidInputError, match=r"cannot be compared with, as if changed by hand: \w+Error"):
+        run_study(ALONE, tmp_path / "run", against=tmp_path)
+    assert not (tmp_path / "run").exists()
 
 
 def test_work_is_timed_beside_each_batch_and_kept(monkeypatch, tmp_path):

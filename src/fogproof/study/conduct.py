@@ -8,6 +8,7 @@ import time
 from pathlib import Path
 from typing import Any
 
+from fogproof.errors import InvalidInputError
 from fogproof.study.cells import cells_of, prepare
 from fogproof.study.csv_table import table
 from fogproof.study.environment import environment
@@ -44,7 +45,7 @@ def run_study(
     """
     folder = Path(folder)
     started, clock = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"), time.perf_counter()
-    before = None if against is None else read_results(Path(against))
+    before = None if against is None else _comparable(Path(against))
     elsewhere = executor != "threads"
     if elsewhere:
         try_own(study)
@@ -77,4 +78,15 @@ def run_study(
     write_file(folder / "results.csv", table(record))
     if stopped is not None:
         raise stopped
+    return record
+
+
+def _comparable(path: Path) -> dict[str, Any]:
+    """Return an earlier record that can be compared with; one that cannot is told before anything is drawn."""
+    record = read_results(path)
+    try:
+        compare(record, record)
+    except Exception as error:  # whatever somebody made of a record
+        what = f"{path} cannot be compared with, as if changed by hand: {type(error).__name__}: {error}"
+        raise InvalidInputError(what, str(path)) from None
     return record
