@@ -77,6 +77,8 @@ def _explained(subject: Subject, cause: str, findings: Sequence[Finding], sample
     named, words, rest = ("", "", subject) if cause in _CONSTANT else single_points(subject, samples, seed)
     if named != "clamped" and cause != "atom" and cause not in _SHARES:
         return _searched(subject, cause, findings, samples, seed)
+    if named == "clamped":  # with what lies beyond: all of its misfit
+        return named, words
     own = cause if cause in _SHARES else named or cause
     shown = contrasted(rest, samples, seed)
     if shown is None or shown[1].left < _MISFIT * math.sqrt(2 * shown[1].freedom):
