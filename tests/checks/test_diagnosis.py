@@ -7,7 +7,7 @@ import pytest
 
 from fogproof import Box, HalfLine, Interval, SphericalTriangle, UnitSphere, UnitSquare, check_sampler
 from fogproof.checks.diagnosis import diagnosed, holes
-from fogproof.checks.diagnosis.diagnose import _setting
+from fogproof.checks.diagnosis.explaining import setting_of
 from fogproof.checks.diagnosis.factors import named_factor
 from fogproof.checks.diagnosis.hypothesis import Hypothesis
 from fogproof.checks.subject import Subject
@@ -119,7 +119,7 @@ def test_the_claim_is_asked_once_at_the_points_that_every_hypothesis_weighs():
         return np.full(len(x), 0.25 / np.pi)
 
     subject = Subject(lambda u: points.law(np.empty((0, 3))).place(u), pdf, points, 2)
-    setting = _setting(subject, 1 << 12, 1)
+    setting = setting_of(subject, 1 << 12, 1)
     asked.clear()  # that the points hold still under rounding has been looked at
     whole = setting.contrast.points
     first = setting.p(whole)

@@ -52,6 +52,7 @@ CAUSES = (
 
 
 _BULK = {"shape", "sign convention"}  # what is found where atoms have no part in it
+_LAWS = _BULK | {"missing tail", "skipped band", "correlation"}  # what many samples tell
 
 
 def likely_cause(findings: Iterable[Finding]) -> str:
@@ -66,7 +67,7 @@ def likely_cause(findings: Iterable[Finding]) -> str:
     if "atom" in named and any(f.check == "repeated points" and f.outcome == "not rejected" for f in found):
         named = named - {"atom"} | {"shape"}
     if "edge of the uniforms" in named and any(
-        f.p_value is not None and f.cause in _BULK for f in found if f.outcome == "rejected"
+        f.p_value is not None and f.cause in _LAWS for f in found if f.outcome == "rejected"
     ):
         named = named - {"edge of the uniforms"}  # which are too rare to move a law
     if any(f.check in ("domain", "returned pdf") and f.cause == "coarse numbers" for f in found):

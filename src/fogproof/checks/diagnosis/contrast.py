@@ -115,6 +115,17 @@ class Contrast:
         doubt = 1 / math.sqrt(max(float(variance.sum()), 1e-300))
         return Fit(likelihood, float(np.exp(log_c)), left, cells, doubt)
 
+    def odds(self, s: np.ndarray) -> np.ndarray:
+        """Return the odds (n + m,) of each point to be a sample under a density with values s."""
+        return self._explained(s)[2]
+
+    def waves(self, most: int, axes: int) -> np.ndarray:
+        """Return 1 and cosines (n + m, k) of up to so many half waves along each of the first axes, at all points."""
+        k = min(len(self.law.axes), axes)
+        u = self.law.coordinates(self.points, np.full((len(self.points), len(self.law.axes)), 0.5))[:, :k]
+        angles = np.pi * u[:, :, None] * np.arange(1, most + 1)
+        return np.concatenate([np.ones((len(u), 1)), np.cos(angles).reshape(len(u), -1)], axis=1)
+
     def _explained(self, s: np.ndarray) -> tuple[float, float, np.ndarray]:
         """Return the likelihood of a density, the logarithm of its best constant, and the odds of each point to be a sample."""
         n = len(self.x)

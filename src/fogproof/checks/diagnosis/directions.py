@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import partial
 from itertools import permutations
-from typing import Any
 
 import numpy as np
 
-from fogproof.checks.diagnosis import grids
+from fogproof.checks.diagnosis import grids, lobes
 from fogproof.checks.diagnosis.contrast import Density
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting, known_number, of_points
 
@@ -17,8 +17,7 @@ _MIRROR = np.array([1.0, 1.0, -1.0])
 _ALONG = 0.03  # from a coordinate axis: such a lobe is meant to be about it
 _PER_CELL = 8  # samples in a cell, seen and expected, that tell a density
 _UNIT_LENGTH = 0.3  # relative error of a direction that cells tell
-_LINEAR = 1e-6  # share of the variance of a logarithm that a line leaves
-_CONSTANT = 0.02  # deviation of the logarithm of a ratio of two lobes that are one
+_OUTER, _STEPS = 512, 2000  # samples that may bound a cone, and steps towards its axis
 _LEAN = 0.03  # mean length of directions that have a direction
 
 
@@ -41,15 +40,32 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
             names = "".join("xyz"[i] for i in order)
             words = f"these samples fit the pdf with its axes (x, y, z) taken for ({', '.join(names)})"
             yield Hypothesis("swapped axes", words, of_points(partial(np.take, indices=order, axis=1)))
+    yield from _sines(setting)
+    yield from _about_the_mean(setting)
+    yield from _flat(setting)
+    yield from _half_vectors(setting)
+    yield from _frames(setting)
+    yield from lobes.hypotheses(setting)
+    yield from _powers(setting)
+    yield Hypothesis(
+        "another parameter",
+        "these samples fit the pdf raised to the power {value}, as of a broader or a narrower lobe",
+        lambda s, a: lambda x: np.maximum(s.p(x), 0.0) ** a,
+        (0.3, 0.6, 0.8, 0.95, 1.05, 1.25, 1.7, 3.0),
+        null=1.0,
+    )
+    yield from grids.of_directions(setting)
+
+
+def _sines(setting: Setting) -> Iterator[Hypothesis]:
     sine = "missing Jacobian", "a sine is missing: these samples are uniform in theta where the pdf means solid angle"
     yield Hypothesis(*sine, lambda s, _: lambda x: s.p(x) / _sine(x))
     yield Hypothesis(
         "missing Jacobian", "these samples have a sine of theta too many", lambda s, _: lambda x: s.p(x) * _sine(x)
     )
-    yield from _flat(setting)
-    yield from _half_vectors(setting)
-    yield from _frames(setting)
-    yield from _lobes(setting)
+
+
+def _powers(setting: Setting) -> Iterator[Hypothesis]:
     yield Hypothesis(
         "wrong power",
         "these samples fit the pdf times a power of the cosine, {value}",
@@ -68,7 +84,7 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
         "stretched",
         "these samples fit the pdf with x and y stretched by {value}",
         lambda s, a: s.moved(lambda x: _unit(x * (1 / a, 1 / a, 1.0)), _squeezed(1 / a)),
-        (0.25, 0.5, 0.7, 0.9, 0.97, 1.03, 1.1, 1.4, 2.0, 4.0),
+        (0.04, 0.1, 0.25, 0.5, 0.7, 0.9, 0.97, 1.03, 1.1, 1.4, 2.0, 4.0, 10.0, 25.0),
         null=1.0,
     )
     yield Hypothesis(
@@ -79,7 +95,60 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
         known_number({2.0: "a square root of the cosine is missing", 0.5: "a square root too many"}),
         null=1.0,
     )
-    yield from grids.of_directions(setting)
+
+
+def _about_the_mean(setting: Setting) -> Iterator[Hypothesis]:
+    """Yield what may have happened about the mean direction of the claim, if it has one that is not z, and a cone too narrow."""
+    yield from _cone(setting)
+    mean = setting.claimed_mean()
+    length = float(np.linalg.norm(mean))
+    if length < _LEAN or np.linalg.norm(np.cross(mean, (0, 0, 1))) < _ALONG * length:
+        return
+    axis = mean / length
+    frame = _turn(axis, np.array([0.0, 0.0, 1.0]))
+    name = " about (" + ", ".join(f"{c:.3f}" for c in axis) + ")"
+    known = [
+        (setting, _turned(setting, frame))
+    ]  # the last one: hypotheses are asked of the same points again and again
+
+    def lifted(hypothesis: Hypothesis, s: Setting, value: float) -> Density:
+        if known[0][0] is not s:
+            known[0] = s, _turned(s, frame)
+        turned = known[0][1]
+        density = hypothesis.density(turned, value)
+        return lambda x: density(turned.contrast.points if x is s.contrast.points else x @ frame.T)
+
+    for hypothesis in (*_sines(known[0][1]), *_powers(known[0][1])):
+        yield replace(hypothesis, words=hypothesis.words + name, density=partial(lifted, hypothesis))
+
+
+def _turned(setting: Setting, frame: np.ndarray) -> Setting:
+    """Return what hypotheses may look at in another frame, of orthonormal rows (3, 3)."""
+    contrast = setting.contrast
+    turned = replace(contrast, x=contrast.x @ frame.T, z=contrast.z @ frame.T)
+    other = replace(setting, claim=lambda y: setting.p(y @ frame), contrast=turned)
+    other.__dict__["_at_points"] = setting.p(contrast.points)
+    return other
+
+
+def _cone(setting: Setting) -> Iterator[Hypothesis]:
+    """Yield that all samples lie in a cone, of which the claim has more: the narrowest (Badoiu & Clarkson 2003)."""
+    x = setting.contrast.x
+    axis = x.mean(axis=0)
+    if np.linalg.norm(axis) < _LEAN:
+        return
+    for _ in range(2):
+        outer = x[np.argsort(x @ axis)[:_OUTER]]
+        for i in range(1, _STEPS):
+            axis = axis / np.linalg.norm(axis)
+            axis = axis + (outer[np.argmin(outer @ axis)] - axis) / (i + 1)
+    axis /= np.linalg.norm(axis)
+    least = float((x @ axis).min())
+    if least < 0:
+        return
+    angle, to = float(np.degrees(np.arccos(min(least, 1.0)))), ", ".join(f"{c:.4f}" for c in axis)
+    words = f"no sample lies farther than {angle:.4g} degrees from ({to}), and the pdf has more; the others fit it"
+    yield Hypothesis("missing tail", words, lambda s, _: lambda x: s.p(x) * (x @ axis >= least))
 
 
 def _flat(setting: Setting) -> Iterator[Hypothesis]:
@@ -200,80 +269,3 @@ def _turn(a: np.ndarray, b: np.ndarray) -> np.ndarray:
         return 2 * np.outer(axis, axis) - np.eye(3)
     cross = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
     return np.eye(3) + cross + cross @ cross / (1 + cosine)
-
-
-def _lobes(setting: Setting) -> Iterator[Hypothesis]:
-    """Yield the phase functions that everybody uses, about the mean direction of the claim, or z if it has none."""
-    mean = setting.claimed_mean()
-    length = float(np.linalg.norm(mean))
-    axis = mean / length if length > _LEAN else np.array([0.0, 0.0, 1.0])
-    axis = np.rint(axis) if np.linalg.norm(axis - np.rint(axis)) < _ALONG else axis
-    own = f"; the pdf's mean cosine is {length:.4g}" if length > _LEAN else ""
-
-    def about(f: Callable[[np.ndarray, float], np.ndarray], null: float | None) -> Callable[[Setting, float], Density]:
-        if null is None:
-            return lambda s, value: lambda x: f(x @ axis, value)
-        return lambda s, value: lambda x: s.p(x) * f(x @ axis, value) / f(x @ axis, null)  # whatever else the claim has
-
-    g = (-0.95, -0.8, -0.6, -0.3, 0.05, 0.3, 0.6, 0.8, 0.9, 0.97)
-    kappas = (0.5, 2.0, 8.0, 32.0, 128.0, 1000.0)
-    kappa = _kappa(setting, axis)
-    near = () if kappa is None else (0.9 * kappa, 1.1 * kappa)
-    for law, f, trials, null in (
-        ("Henyey-Greenstein with g", henyey_greenstein, g, _own(setting, axis, henyey_greenstein)),
-        ("Schlick's phase function with k", schlick, g, _own(setting, axis, schlick)),
-        ("a von Mises-Fisher lobe with kappa", _fisher, tuple(sorted({*kappas, *near})), kappa),
-    ):
-        yield Hypothesis(
-            "another law" if null is None else "another parameter",
-            f"these samples fit {law} = {{value}}" + (own if null is None else f"; the pdf's is {null:.4g}"),
-            about(f, null),
-            trials,
-            null=null,
-        )
-    yield Hypothesis(
-        "another law", "these samples fit Rayleigh's phase function", about(lambda mu, _: 1 + mu * mu, None)
-    )
-
-
-def _fisher(mu: np.ndarray, kappa: float | np.ndarray) -> np.ndarray:
-    return np.exp(kappa * (mu - 1))
-
-
-def _kappa(setting: Setting, axis: np.ndarray) -> float | None:
-    """Return the parameter of a claim that is a von Mises-Fisher lobe itself, None if it is none: its logarithm is linear."""
-    x = setting.contrast.x[:512]
-    p = setting.p(x)
-    if not np.all(p > 0):
-        return None
-    versine = 0.5 * np.sum((x - axis) ** 2, axis=1)
-    scale = float(versine.mean())
-    slope, level = np.polyfit(versine / scale, np.log(p), 1)
-    left, kappa = np.log(p) - level - slope * versine / scale, -float(slope) / scale
-    return kappa if kappa > _LEAN and np.var(left) < _LINEAR * np.var(np.log(p)) else None
-
-
-def henyey_greenstein(mu: np.ndarray, g: float | np.ndarray) -> np.ndarray:
-    """Return the law of Henyey & Greenstein (1941), up to a constant factor that does not depend on mu."""
-    return np.asarray((1 - g * g) / np.maximum(1 + g * g - 2 * g * mu, 1e-12) ** 1.5)
-
-
-def schlick(mu: np.ndarray, k: float | np.ndarray) -> np.ndarray:
-    """Return the law of Schlick (1993)."""
-    return np.asarray((1 - k * k) / np.maximum(1 - k * mu, 1e-9) ** 2)
-
-
-def _own(setting: Setting, axis: np.ndarray, f: Callable[[Any, Any], np.ndarray]) -> float | None:
-    """Return the parameter of a claim that is such a lobe itself, None if it is none: its ratio to one as wide is a constant."""
-    x = setting.contrast.x[:512]
-    p, mu = setting.p(x), x @ axis
-    if not np.all(p > 0):
-        return None
-    ends = np.argmax(mu), np.argmin(mu)
-    target = np.log(p[ends[0]] / p[ends[1]])
-    best, room = 0.0, 0.999
-    for _ in range(3):
-        values = np.linspace(max(best - room, -0.999), min(best + room, 0.999), 401)
-        own = np.log(f(mu[ends[0]], values) / f(mu[ends[1]], values))
-        best, room = float(values[int(np.argmin(np.abs(own - target)))]), 0.01 * room
-    return best if np.std(np.log(p) - np.log(f(mu, best))) < _CONSTANT else None

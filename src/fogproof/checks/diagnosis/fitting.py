@@ -15,30 +15,45 @@ _SCREENED = 1 << 12  # samples on which all hypotheses are tried first, with a f
 _TRIED = 12  # of them that are fitted closer, on as many samples as show the misfit
 _TELLING, _MOST = 200.0, 1 << 16  # chi-square of the misfit on those samples, and most of them
 _FALLEN, _DOUBLED = 0.3, 16  # of log-likelihood beside its maximum; times at most that an error is doubled
-_TIE = 1.5  # of log-likelihood: the simplest hypothesis may have so much less than the last one
+TIE = 1.5  # of log-likelihood: the simplest hypothesis may have so much less than the last one
 _APART = 3.0  # standard errors between a parameter and the claim's
 _NEAR = 0.1  # of the way from the null to the nearest trial: a first step
+_TELLING_NUMBERS = math.log(10)  # what it costs to choose among so many
 _KEPT = 3  # of those that are fitted on all samples
 
 
 @dataclass(frozen=True)
 class Explained:
-    """A fitted hypothesis, its parameter with a standard error, how it fits, and the share of the misfit that it explains."""
+    """A fitted hypothesis, its parameter with a standard error, how it fits, and what it gains.
+
+    score   log-likelihood less the price of the parameters, and a little for the simpler hypothesis
+    simple  that little
+    """
 
     hypothesis: Hypothesis
     value: float
     error: float
     fit: Fit
-    share: float
+    score: float
+    simple: float
 
     @property
     def words(self) -> str:
         """The explanation as a sentence."""
-        return f"{self.hypothesis.said(self.value, self.error)} (this explains {self.share:.0%} of the misfit)"
+        return self.hypothesis.said(self.value, self.error)
+
+    @property
+    def cause(self) -> str:
+        """The class of error."""
+        return self.hypothesis.caused(self.value, self.error)
+
+    def density(self, setting: Setting) -> np.ndarray:
+        """Return the density that the samples would have, at all points."""
+        return self.hypothesis.density(setting, self.value)(setting.contrast.points)
 
 
-def likeliest(setting: Setting, base: Fit, hypotheses: list[Hypothesis]) -> Explained | None:
-    """Return the hypothesis of the greatest likelihood, parameters paid for by Schwarz's criterion; earlier ones win ties."""
+def likeliest(setting: Setting, base: Fit, hypotheses: list[Hypothesis]) -> list[Explained]:
+    """Return hypotheses of the greatest likelihood, parameters paid for by Schwarz's criterion; earlier ones win ties."""
     n = len(setting.contrast.x)
     small = replace(setting, contrast=setting.contrast.part(_SCREENED))
     middle = replace(
@@ -75,15 +90,21 @@ def likeliest(setting: Setting, base: Fit, hypotheses: list[Hypothesis]) -> Expl
             value, error = _polished(setting, hypothesis, value, error)
             if hypothesis.null is not None and abs(value - hypothesis.null) < _APART * error:
                 continue  # nothing tells it from the claim
-        fit = setting.contrast.fit(hypothesis.density(setting, value)(setting.contrast.points))
-        share = 1 - max(fit.left - 2 * math.sqrt(2 * fit.freedom), 0.0) / max(base.left, 1.0)
-        score = fit.likelihood - hypothesis.price(n)
-        found.append((score + _TIE * order / len(hypotheses), order, Explained(hypothesis, value, error, fit, share)))
-    return max(found, key=lambda one: one[:2])[2] if found else None
+        found.append(judged(setting, hypothesis, value, error, TIE * order / len(hypotheses)))
+    return sorted(found, key=lambda one: one.score, reverse=True)
 
 
-def nearest(middle: Setting, setting: Setting, base: Fit, hypotheses: list[Hypothesis]) -> Explained | None:
-    """Return the likeliest hypothesis with a parameter close to what makes it the claim: a misfit that hardly shows is no other.
+def judged(setting: Setting, hypothesis: Hypothesis, value: float, error: float, simple: float) -> Explained:
+    """Return how a hypothesis with a parameter explains the samples; `simple` is added to its score."""
+    fit = setting.contrast.fit(hypothesis.density(setting, value)(setting.contrast.points))
+    score = fit.likelihood - hypothesis.price(len(setting.contrast.x)) + simple
+    if hypothesis.trials and hypothesis.named(value, error):  # one of few numbers, and none that was fitted
+        score += max(0.5 * math.log(len(setting.contrast.x)) - _TELLING_NUMBERS, 0.0)
+    return Explained(hypothesis, value, error, fit, score, simple)
+
+
+def nearest(middle: Setting, setting: Setting, hypotheses: list[Hypothesis]) -> list[Explained]:
+    """Return the likeliest hypotheses with a parameter close to what makes each the claim: a misfit that hardly shows is no other.
 
     middle  fewer samples, on which all are tried
     """
@@ -101,11 +122,8 @@ def nearest(middle: Setting, setting: Setting, base: Fit, hypotheses: list[Hypot
     found = []
     for _, order, hypothesis, value, error in sorted(tried, key=lambda one: one[:2], reverse=True)[:_KEPT]:
         value, error, _ = _parabola(setting, hypothesis, value, error, _likelihood(setting, hypothesis, value))
-        fit = setting.contrast.fit(hypothesis.density(setting, value)(setting.contrast.points))
-        share = 1 - max(fit.left - 2 * math.sqrt(2 * fit.freedom), 0.0) / max(base.left, 1.0)
-        score = fit.likelihood + _TIE * order / len(hypotheses)
-        found.append((score, order, Explained(hypothesis, value, error, fit, share)))
-    return max(found, key=lambda one: one[:2])[2] if found else None
+        found.append(judged(setting, hypothesis, value, error, TIE * order / len(hypotheses)))
+    return sorted(found, key=lambda one: one.score, reverse=True)
 
 
 def _null_likelihood(setting: Setting) -> float:
@@ -164,9 +182,11 @@ def _error(setting: Setting, hypothesis: Hypothesis, value: float, room: float) 
 
 
 def sharpened(setting: Setting, found: Explained) -> Explained:
-    """Return the same hypothesis with its parameter fitted to more samples."""
-    value, error = _polished(setting, found.hypothesis, found.value, found.error)
-    return replace(found, value=value, error=error)
+    """Return the same hypothesis judged on more samples, with its parameter fitted to them."""
+    value, error = found.value, found.error
+    if found.hypothesis.trials:
+        value, error = _polished(setting, found.hypothesis, value, error)
+    return judged(setting, found.hypothesis, value, error, found.simple)
 
 
 def _polished(setting: Setting, hypothesis: Hypothesis, value: float, error: float) -> tuple[float, float]:

@@ -11,6 +11,7 @@ from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting
 
 _LACK = 0.5  # of the expected samples: a place with fewer belongs to a hole
 _GAIN = 20.0  # samples that a hole must lack beyond that
+_SOME = 0.4  # share of samples that may follow another law: most do not
 _HALF_TURN = 2e-3
 _EMPTY = 0.2  # the same for a cell of the tree
 _TELLING = 8.0  # samples expected in such a cell
@@ -28,8 +29,8 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
     yield Hypothesis(
         "mixture",
         "a share of {value} of these samples follows another, broader law",
-        lambda s, e: lambda x: (1 - min(e, 1.0)) * s.p(x) + min(e, 1.0) * s.law.density(x),
-        (0.003, 0.01, 0.03, 0.1, 0.3, 0.6),
+        lambda s, e: lambda x: (1 - min(e, _SOME)) * s.p(x) + min(e, _SOME) * s.law.density(x),
+        (0.003, 0.01, 0.03, 0.1, 0.3),
         null=0.0,
     )
 

@@ -41,6 +41,13 @@ class Setting:
         weight = self._at_points[n:] / self.contrast.q[n:]
         return np.tensordot(weight, z, axes=1) / max(float(weight.sum()), 1e-300)
 
+    def claimed_points(self, most: int) -> np.ndarray:
+        """Return points where the claim has its probability, (most, ...): what they tell of it holds beyond where samples are."""
+        n = len(self.contrast.x)
+        share = np.cumsum(np.maximum(self._at_points[n:], 0.0) / self.contrast.q[n:])
+        at = np.searchsorted(share, share[-1] * (np.arange(most) + 0.5) / most)
+        return self.contrast.z[np.minimum(at, len(share) - 1)]
+
     def moved(self, back: Callable[[np.ndarray], np.ndarray], jacobian: Density | None = None) -> Density:
         """Return the density of points that a map has moved, by the inverse of the map: p(y) |dy/dx| at y = back(x).
 

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from functools import partial
 
 import numpy as np
 
+from fogproof.checks.diagnosis.contrast import Density
 from fogproof.checks.diagnosis.grids import SHIFTS
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting, known_number
 from fogproof.domains import HalfLine, Interval, RealLine
 
 _MIDDLE = 0.05  # of a standard deviation: a claim's middle is told no closer
 _MEASURED = 0.03  # relative error of a claim's deviation, told by points of the known law
+_PARABOLA = 1e-6  # share of the variance of a logarithm that a parabola leaves
 SCALES = (0.001, 0.01, 0.1, 0.3, 0.5, 0.8, 0.95, 1.05, 1.25, 2.0, 3.0, 10.0, 100.0, 1000.0)
 _POWERS = (-2.0, -1.5, -1.0, -0.5, -0.2, 0.2, 0.5, 1.0, 1.5, 2.0)
 _NAMES = {
@@ -54,7 +57,7 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
         yield Hypothesis("sign convention", "these samples fit the pdf of -x", lambda s, _: lambda x: s.p(-x))
     if isinstance(domain, RealLine):
         yield from _of_another_deviation(setting)
-    yield from _of_another_scale(origin)
+    yield from _of_another_scale(setting, origin)
     if isinstance(domain, HalfLine):
         yield Hypothesis(
             "wrong power",
@@ -90,16 +93,31 @@ def _turned_or_shifted_round(domain: Interval) -> Iterator[Hypothesis]:
     )
 
 
-def _of_another_scale(origin: float) -> Iterator[Hypothesis]:
-    yield Hypothesis(
-        "wrong scale",
-        "these samples fit the pdf of an exponent {value} times as large",
-        lambda s, a: lambda x: np.maximum(s.p(x), 0.0) ** a,
-        SCALES,
-        _EXPONENTS,
-        null=1.0,
-    )
-    yield _stretched(origin, "")
+def _of_another_scale(setting: Setting, origin: float) -> Iterator[Hypothesis]:
+    """Yield a stretch, and a power of the pdf: that is another scale too where its logarithm is a parabola, or a line."""
+    powers = partial(Hypothesis, density=_to_the_power, trials=SCALES, null=1.0)
+    if _parabolic(setting):
+        yield powers("wrong scale", "these samples fit the pdf of an exponent {value} times as large", named=_EXPONENTS)
+        yield _stretched(origin, "")
+    else:
+        yield _stretched(origin, "")
+        words = "these samples fit the pdf raised to the power {value}, as of another parameter of its tails"
+        yield powers("another parameter", words)
+
+
+def _to_the_power(setting: Setting, power: float) -> Density:
+    return lambda x: np.maximum(setting.p(x), 0.0) ** power
+
+
+def _parabolic(setting: Setting) -> bool:
+    """Return whether the logarithm of the claim is a polynomial of degree 2 at most where the samples are."""
+    x = setting.claimed_points(512)
+    p = setting.p(x)
+    if not np.all((p > 0) & np.isfinite(p)) or np.ptp(x) == 0:
+        return False
+    u = (x - x.mean()) / np.ptp(x)
+    left = np.log(p) - np.polyval(np.polyfit(u, np.log(p), 2), u)
+    return float(np.var(left)) <= _PARABOLA * float(np.var(np.log(p)))
 
 
 def _stretched(origin: float, where: str, names: dict[float, str] | None = None) -> Hypothesis:

@@ -1,4 +1,4 @@
-"""What goes wrong with tables: indices off by some, tables read backwards, entries that are all alike or a few that are off."""
+"""What goes wrong with tables: indices off by some, clamped or rounded, tables read backwards, few entries that are off."""
 
 from __future__ import annotations
 
@@ -7,15 +7,18 @@ from functools import partial
 
 import numpy as np
 
+from fogproof.checks.diagnosis.contrast import Density
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting, of_points
 
 _OFF = (1, -1, 2, -2)
 _ENTRIES = 8  # that are off at most
+_ONE_IN = 3  # entries of a table that are off at most: more are no few
+_FEW = 5.0  # standard deviations of a count
 
 
 def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
     """Yield what may have happened to whole numbers, the simplest first."""
-    n, x = setting.domain.measure, setting.contrast.x
+    n = setting.domain.measure
     if np.isfinite(n):
         yield Hypothesis("uniform law", "these samples are uniform", lambda s, _: lambda i: np.ones(len(i)))
         yield Hypothesis(
@@ -24,20 +27,53 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
     for off in _OFF:
         words = f"these samples fit the table with every index off by {off:+d}"
         yield Hypothesis("shifted", words, of_points(partial(_index, off=off, n=n)))
-    if np.isfinite(n) and n <= 1 << 16:
-        count = np.bincount(x.astype(int), minlength=int(n))
-        p = setting.p(np.arange(n))
-        expected = len(x) * p / max(p.sum(), 1e-300)
-        worst = np.argsort(-np.abs(count - expected) / np.sqrt(np.maximum(expected, 1)))
-        few = worst[: max(1, min(_ENTRIES, int(n) // 2))]
-        factor = np.ones(int(n))
-        factor[few] = (count[few] + 0.5) / np.maximum(expected[few], 0.5)
-        named = ", ".join(str(i) for i in np.sort(few[:4]))
+    if np.isfinite(n) and n > 2:
+        last = int(n) - 1
         yield Hypothesis(
-            "few entries",
-            f"these samples fit the table but for {len(few)} entries, among them {named}",
-            lambda s, _: lambda i: s.p(i) * factor[np.clip(i, 0, n - 1).astype(int)],
+            "skipped entry", f"the last entry, {last}, never comes; the others fit the table", partial(_without, last)
         )
+        words = f"the last entry, {last}, never comes, and {last - 1} comes for both: an index is clamped one too low"
+        yield Hypothesis("clamped", words, partial(_gathered, last))
+        words = f"the first entry and the last come half as often as others do: u (n - 1) is rounded, n = {last + 1}"
+        yield Hypothesis("rounded index", words, partial(_halved, last))
+    if np.isfinite(n) and n <= 1 << 16:
+        yield from _few(setting, int(n))
+
+
+def _few(setting: Setting, n: int) -> Iterator[Hypothesis]:
+    """Yield that the entries are off whose counts stand out, if these are few."""
+    x = setting.contrast.x
+    count = np.bincount(x.astype(int), minlength=n)
+    p = setting.p(np.arange(n))
+    expected = len(x) * p / max(p.sum(), 1e-300)
+    off = np.abs(count - expected) / np.sqrt(np.maximum(expected, 1))
+    few = np.flatnonzero(off > _FEW)
+    if not 0 < len(few) <= min(_ENTRIES, n // _ONE_IN):
+        return
+    others = np.ones(n, dtype=bool)
+    others[few] = False
+    level = count[others].sum() / max(expected[others].sum(), 1e-300)
+    factor = np.ones(n)
+    factor[few] = (count[few] + 0.5) / np.maximum(level * expected[few], 0.5)
+    named = ", ".join(str(i) for i in few)
+    yield Hypothesis(
+        "few entries",
+        f"these samples fit the table but for {len(few)} entries, {named}",
+        lambda s, _: lambda i: s.p(i) * factor[np.clip(i, 0, n - 1).astype(int)],
+        fitted=len(few),
+    )
+
+
+def _without(last: int, setting: Setting, _: float) -> Density:
+    return lambda i: np.where(i == last, 0.0, setting.p(i))
+
+
+def _gathered(last: int, setting: Setting, _: float) -> Density:
+    return lambda i: np.where(i == last, 0.0, setting.p(i) + (i == last - 1) * setting.p(np.full(len(i), last)))
+
+
+def _halved(last: int, setting: Setting, _: float) -> Density:
+    return lambda i: setting.p(i) * np.where((i == 0) | (i == last), 0.5, 1.0)
 
 
 def _index(i: np.ndarray, off: int, n: float) -> np.ndarray:

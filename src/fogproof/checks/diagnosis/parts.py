@@ -5,14 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
+from itertools import permutations
 
 import numpy as np
 
 from fogproof.checks.diagnosis import regions
 from fogproof.checks.diagnosis.contrast import Density
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting
-from fogproof.domains import Domain, Product
+from fogproof.domains import Discrete, Domain, Product
 
+_SHORT = 4  # entries of a table that may be exchanged
 _WHOLE = {"uniform law", "another law"}  # of a whole point: they say nothing of how one part depends on another
 
 
@@ -22,6 +25,7 @@ def hypotheses(
     """Yield what may have happened to all coordinates, if each part is a number, and what may have happened to one part."""
     if all(part.shape == () for part in product.parts):
         yield from regions.hypotheses(setting)
+    yield from _together(setting, product)
     first = 0
     for part in product.parts:
         last = first + math.prod(part.shape)
@@ -31,6 +35,39 @@ def hypotheses(
             if hypothesis.cause not in _WHOLE:
                 yield _lifted(hypothesis, part, columns, name)
         first = last
+
+
+def _together(setting: Setting, product: Product) -> Iterator[Hypothesis]:
+    """Yield that entries of a short table are exchanged, each with its own probability: one's other parts are drawn for another."""
+    first = 0
+    for part in product.parts:
+        size = part.measure
+        if isinstance(part, Discrete) and 1 < size <= _SHORT:
+            for order in permutations(range(int(size))):
+                if order != tuple(range(int(size))):
+                    names = ", ".join(map(str, order))
+                    words = f"what belongs to the entries {names} of column {first} is drawn for 0 to {len(order) - 1}"
+                    yield Hypothesis("swapped entries", words, partial(_exchanged, np.array(order), first))
+        first += math.prod(part.shape)
+
+
+def _exchanged(order: np.ndarray, column: int, setting: Setting, _: float) -> Density:
+    """Return the density with the entries of one column exchanged, where each keeps its probability, told by the known points."""
+    contrast = setting.contrast
+    n = len(contrast.x)
+    weight = np.maximum(setting.p(contrast.points)[n:], 0.0) / contrast.q[n:]
+    share = np.bincount(_entries(contrast.z, column, order), weight, len(order))
+
+    def density(x: np.ndarray) -> np.ndarray:
+        at, y = _entries(x, column, order), x.copy()
+        y[:, column] = order[at]
+        return setting.p(y) * share[at] / np.maximum(share[order[at]], 1e-300)
+
+    return density
+
+
+def _entries(x: np.ndarray, column: int, order: np.ndarray) -> np.ndarray:
+    return np.clip(np.rint(x[:, column]), 0, len(order) - 1).astype(np.intp)
 
 
 def _lifted(hypothesis: Hypothesis, part: Domain, columns: slice | int, name: str) -> Hypothesis:

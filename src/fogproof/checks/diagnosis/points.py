@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,6 +13,8 @@ from fogproof.checks.subject import Subject
 from fogproof.errors import shorten
 
 _DRAWN = 1 << 15  # samples among which they are looked for
+_MOST = 64  # points that are looked at
+_DIGITS = 12  # of a coordinate that are no rounding
 _OFTEN = 10  # times that a point must come
 _CHANCE = 5.0  # standard errors that chance makes
 
@@ -42,16 +45,40 @@ def clamped(contrast: Contrast, subject: Subject) -> str:
     return ""
 
 
-def single_points(subject: Subject, samples: int, seed: int) -> tuple[str, str]:
-    """Return "clamped" or "atom", and in words where the samples come back to and with which probability; "" if nowhere."""
+def single_points(subject: Subject, samples: int, seed: int) -> tuple[str, str, Subject]:
+    """Return "clamped" or "atom", and in words where the samples come back to and with which probability; "" if nowhere.
+
+    The third is the subject with these points declared, so that what lies between them is the rest.
+    """
     contrast = Contrast.of(subject, min(_DRAWN, samples), batch_generator(seed, "diagnosis", 2, 0))
     if contrast is None:
-        return "", ""
-    if told := clamped(contrast, subject):
-        return "clamped", told
+        return "", "", subject
     points, counts = np.unique(contrast.x, axis=0, return_counts=True)
-    if counts.max() < _OFTEN:
-        return "", ""
-    often, share = points[np.argmax(counts)], counts.max() / len(contrast.x)
-    words = f"{share:.3g} of the samples are {shorten(often.tolist())}, to which a pdf gives no probability"
-    return "atom", f"{words}: if that is meant, declare atoms={{point: probability}}"
+    order = np.argsort(-counts, kind="stable")[:_MOST]
+    again = order[counts[order] >= _OFTEN]
+    found = {_key(points[i]): float(counts[i] / len(contrast.x)) for i in again.tolist()}
+    rest = replace(subject, atoms={**subject.atoms, **found})
+    if told := clamped(contrast, subject):
+        return "clamped", told, rest
+    if not found:
+        return "", "", subject
+    point, share = next(iter(found.items()))
+    named = shorten(list(point) if isinstance(point, tuple) else point)
+    words = f"{share:.3g} of the samples are {named}, to which a pdf gives no probability"
+    return "atom", f"{words}: if that is meant, declare atoms={{point: probability}}", rest
+
+
+def _key(point: np.ndarray) -> tuple[float, ...] | float:
+    return tuple(point.tolist()) if point.ndim else float(point)
+
+
+def few_values(contrast: Contrast) -> str:
+    """Return in words which coordinate takes few values alone, "" if none does."""
+    if contrast.law.stepped:
+        return ""
+    u = contrast.law.coordinates(contrast.x, np.full((len(contrast.x), len(contrast.law.axes)), 0.5))
+    for name, column in zip(contrast.law.axes, u.T, strict=True):
+        values = len(np.unique(np.round(column, _DIGITS)))
+        if 1 < values <= len(column) // _OFTEN:
+            return f"{name} takes {values} values alone"
+    return ""

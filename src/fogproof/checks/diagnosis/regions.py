@@ -13,6 +13,7 @@ from fogproof.checks.diagnosis.grids import SHIFTS
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting, known_number, of_points
 from fogproof.checks.diagnosis.lines import SCALES, STRETCHED
 
+_HALF_TURN = 0.01  # radians that chance leaves of it
 _ENDLESS = 1e300  # between the ends of an unbounded axis as its known law has them
 _MOST_SWAPPED = 4  # dimensions
 
@@ -36,6 +37,8 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
             yield from _along(axis, float(box[0, axis]), float(box[1, axis]))
     else:
         yield Hypothesis("sign convention", "these samples fit the pdf of -x", lambda s, _: lambda x: s.p(-x))
+    if k == 2 and box is None:
+        yield from _folded(setting, center)
     yield Hypothesis(
         "missing Jacobian",
         "these samples fit the pdf times a power of the radius, {value}",
@@ -63,6 +66,26 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
             STRETCHED,
             null=1.0,
         )
+
+
+def _folded(setting: Setting, center: np.ndarray) -> Iterator[Hypothesis]:
+    """Yield that half of the plane is empty and its points are at their mirror images, as of a radius without its sign."""
+    phi = np.sort(np.arctan2(*(setting.contrast.x - center).T[::-1]))
+    gaps = np.diff(phi, append=phi[0] + 2 * np.pi)
+    at = int(np.argmax(gaps))
+    if abs(gaps[at] - np.pi) > _HALF_TURN:
+        return
+    middle = phi[at] + 0.5 * gaps[at] + np.pi
+    towards = np.array([np.cos(middle), np.sin(middle)])
+    words = "half of the plane is empty, and its points lie at their mirror images through the centre: the sign of r is lost"
+    reach = -np.sin(0.5 * (np.pi - gaps[at]))  # of samples beyond the half plane
+
+    def density(x: np.ndarray, p: Density) -> np.ndarray:
+        y = x - center
+        kept = y @ towards >= reach * np.sqrt(np.sum(y * y, axis=1))
+        return np.where(kept, p(x) + p(center - y), 0.0)
+
+    yield Hypothesis("lost sign", words, lambda s, _: lambda x: density(x, s.p))
 
 
 def _corners(setting: Setting) -> np.ndarray | None:

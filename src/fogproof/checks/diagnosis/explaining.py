@@ -1,0 +1,149 @@
+"""Which hypothesis explains a misfit: as few samples as show it plainly tell which may, many tell whether it does."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+
+import numpy as np
+
+from fogproof.checks.diagnosis import directions, holes, lines, numbers, parts, regions, turns
+from fogproof.checks.diagnosis.contrast import Contrast, Fit, claimed
+from fogproof.checks.diagnosis.fitting import TIE, Explained, judged, likeliest, nearest, sharpened
+from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting
+from fogproof.checks.diagnosis.shape import unexplained
+from fogproof.checks.streams import batch_generator
+from fogproof.checks.subject import Subject
+from fogproof.domains import Discrete, HalfLine, Interval, Product, RealLine, Rotations, UnitHemisphere, UnitSphere
+
+SIZES = (1 << 14, 1 << 16, 1 << 18)  # samples: as few as show the misfit plainly
+PLAIN = 1000.0  # chi-square that is plain
+_SMALL = 1 << 20  # samples that tell a misfit which does not show in so many
+_MISFIT = 4.0  # standard deviations of a chi-square that is no chance
+_STANDS_OUT = 12.0  # of log-likelihood that a hypothesis gains over the claim
+_CLEARLY = 3.0  # of log-likelihood that tells two hypotheses apart, and one from a law that is a little off anywhere
+_SAME = 1e-3  # of log-likelihood: two hypotheses that are one density
+_CLOSE = 12.0  # of log-likelihood that more samples may make up
+_FITS = 0.98  # the same of a law that has nothing to do with the claim
+_EXPLAINS = 0.95  # of what can be gained: a hypothesis that gains less is not told
+
+_NUMBER = re.compile(r"[-+]?[0-9][-+0-9.e]*")
+
+
+def explanation(subject: Subject, setting: Setting, base: Fit, samples: int, seed: int) -> tuple[str, str] | None:
+    """Return the class of error and the words of the one hypothesis that explains a misfit, None if none does.
+
+    It must gain more than any general correction of the claim would, and leave little to such. Where another gains as much the
+    class is "shape", and the words name both.
+    """
+    many, found = _candidates(subject, setting, base, samples, seed)
+    if not found:
+        return None
+    best = found[0]
+    gain, share = explained_by(many, best)
+    needed = _FITS if best.hypothesis.cause == "another law" else _EXPLAINS
+    import os
+
+    if os.environ.get("DIAG"):
+        print(
+            "   DIAG",
+            len(many.contrast.x),
+            [(f.cause, f.words, round(f.score - best.score, 2)) for f in found],
+            "gain",
+            gain,
+            "share",
+            share,
+            "shape",
+            unexplained(many.contrast, many.p(many.contrast.points)),
+        )
+    if (
+        gain < _STANDS_OUT
+        or share < needed
+        or gain < unexplained(many.contrast, many.p(many.contrast.points)) + _CLEARLY
+    ):
+        return None
+    near = [each for each in found[1:] if each.cause != best.cause and each.score > best.score - _CLEARLY]
+    told = f"{best.words} (this explains {share:.0%} of the misfit)"
+    if not near:
+        return best.cause, told
+    if all(abs(each.fit.likelihood - best.fit.likelihood) < _SAME for each in near):
+        others = dict.fromkeys(each.words for each in near)
+        return best.cause, f"{told}; that is the same as: {'; '.join(others)}"
+    alike = dict.fromkeys(each.words for each in (best, *near))
+    return "shape", f"several hypotheses explain it alike: {'; or '.join(alike)}"
+
+
+def explained_by(setting: Setting, found: Explained) -> tuple[float, float]:
+    """Return the log-likelihood that a hypothesis gains over the claim, and which share that is of what could be gained."""
+    gain = found.score - setting.contrast.likelihood(setting.p(setting.contrast.points))
+    left = unexplained(setting.contrast, found.density(setting))
+    return gain, gain / (gain + left) if gain > 0 else 0.0
+
+
+def _candidates(
+    subject: Subject, setting: Setting, base: Fit, samples: int, seed: int
+) -> tuple[Setting, list[Explained]]:
+    """Return many samples and hypotheses fitted to them, the likeliest first."""
+    if base.left < _MISFIT * math.sqrt(2 * base.freedom):
+        # a small smooth misfit hides among many cells, and stands out against the hypothesis that it is
+        many = setting if samples <= SIZES[-1] else setting_of(subject, min(_SMALL, samples), seed)
+        found = nearest(setting, many, [*of_domain(setting), *holes.hypotheses(setting)]) if many else []
+        if (
+            many
+            and found
+            and found[0].fit.likelihood - many.contrast.likelihood(many.p(many.contrast.points)) > _STANDS_OUT
+        ):
+            return many, found
+    found = likeliest(setting, base, [*of_domain(setting), *holes.hypotheses(setting)])
+    found = [each for each in found if each.score > found[0].score - _CLOSE]
+    n = len(setting.contrast.x)
+    many = setting_of(subject, min(SIZES[-1], samples), seed) if n < min(SIZES[-1], samples) else setting
+    if many is None or many is setting:
+        return setting, found
+    better = [sharpened(many, each) for each in found]
+    told = {_NUMBER.sub("", each.hypothesis.words) for each in found if not each.hypothesis.trials}
+    if told:  # by numbers that samples gave, perhaps: many give better ones
+        again = [*of_domain(many), *holes.hypotheses(many)]
+        for order, each in enumerate(again):
+            if not each.trials and _NUMBER.sub("", each.words) in told:
+                better.append(judged(many, each, 0.0, 0.0, -TIE * order / len(again)))
+    return many, sorted(better, key=lambda each: each.score, reverse=True)
+
+
+def setting_of(subject: Subject, n: int, seed: int) -> Setting | None:
+    """Return what hypotheses may look at, with about n samples; None if too few of them are points of the continuous part."""
+    contrast = Contrast.of(subject, n, batch_generator(seed, "diagnosis", 0, n))
+    return None if contrast is None else Setting(subject.domain, contrast.law, claimed(subject), contrast)
+
+
+def contrasted(subject: Subject, samples: int, seed: int) -> tuple[Setting, Fit] | None:
+    """Return as few samples as show the misfit plainly, and how the claim itself explains them; None if there are too few."""
+    setting: Setting | None = None
+    least = 1 << 12 if subject.pilot is None else 0  # of samples that are there already, no more can be drawn
+    for n in SIZES:
+        setting = setting_of(subject, min(n, max(samples, least)), seed)
+        if setting is None:
+            return None
+        base = setting.contrast.fit(setting.p(setting.contrast.points))
+        if base.left > PLAIN or n >= samples:
+            break
+    return None if setting is None else (setting, base)
+
+
+def of_domain(setting: Setting) -> Iterator[Hypothesis]:
+    """Yield what may have happened on such a domain, the simplest first."""
+    match setting.domain:
+        case UnitSphere() | UnitHemisphere():
+            return directions.hypotheses(setting)
+        case Interval() | HalfLine() | RealLine():
+            return lines.hypotheses(setting)
+        case Discrete():
+            return numbers.hypotheses(setting)
+        case Rotations():
+            return turns.hypotheses(setting)
+        case Product() as product:
+            return parts.hypotheses(setting, product, of_domain)
+    if setting.domain.shape == (3,) and np.allclose(np.sum(setting.contrast.x[:99] ** 2, axis=1), 1):
+        return directions.hypotheses(setting)
+    return regions.hypotheses(setting) if len(setting.domain.shape) == 1 else iter(())
