@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from fogproof.analytic import rod_reflectance_orders
 from fogproof.errors import InvalidInputError, InvalidValueError
 from fogproof.pipe.check import Settings, check_file
 from fogproof.pipe.spec import spec_of
@@ -107,3 +108,30 @@ def test_a_share_of_a_reference_of_0_is_refused_with_its_fix(tmp_path):
         check_file(tmp_path / "x.npy", {"reference": 0, "tolerance": 0.01})
     passed = check_file(tmp_path / "x.npy", {"reference": 0, "tolerance": [0, 0.5]}, Settings(alpha=1e-7)).verdict
     assert passed.outcome == "not rejected", passed
+
+
+def test_events_without_labels_are_refused(tmp_path):
+    np.save(tmp_path / "x.npy", np.random.default_rng().random((2000, 1)))
+    spec = {"domain": {"kind": "interval", "a": 0, "b": 1}, "columns": ["x"], "events": {"0": 0.8, "1": 0.2}}
+    (tmp_path / "pdf.csv").write_text("0,1\n1,1\n")
+    with pytest.raises(InvalidInputError, match="no column event; write one"):
+        check_file(tmp_path / "x.npy", {**spec, "table": str(tmp_path / "pdf.csv")})
+
+
+def test_orders_are_held_to_those_of_a_quantity_and_else_said_to_be_unchecked(tmp_path):
+    """Values of one each, orders with the probabilities of the reference; and the same with every order off by one."""
+    quantity = {"quantity": "rod_reflectance_orders", "length": 1.5, "count": 4}
+    truth = np.asarray(rod_reflectance_orders(1.5, 4).value)
+    rng = np.random.default_rng()
+    order = rng.choice(len(truth) + 1, size=20_000, p=[*truth, 1 - truth.sum()])
+    rows = np.column_stack([(order < len(truth)) * 1.0, np.minimum(order, len(truth) - 1)])
+    for shift, outcome in ((0, "not rejected"), (1, "rejected")):
+        np.save(tmp_path / "v.npy", np.column_stack([rows[:, 0], rows[:, 1] + shift]))
+        spec = {"columns": ["value", "order"], "bounds": [0, 1]}
+        verdict = check_file(tmp_path / "v.npy", {**spec, "quantity": quantity}).verdict
+        assert verdict.outcome == outcome, str(verdict)
+    plain = check_file(tmp_path / "v.npy", {**spec, "reference": float(truth.sum())}).verdict
+    assert any(words.startswith("orders (give references") for words in plain.unchecked)
+    np.save(tmp_path / "v.npy", rows[:, :1])
+    with pytest.raises(InvalidInputError, match="1 columns value, and 5 expectations"):
+        check_file(tmp_path / "v.npy", {"columns": ["value"], "quantity": quantity})

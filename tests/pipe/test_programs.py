@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from fogproof.errors import InvalidInputError
 from fogproof.pipe.check import Settings, check_program
 from fogproof.pipe.process import Timeouts
 
@@ -318,3 +319,9 @@ def test_random_bytes_are_never_an_accident(tmp_path):
         verdict = check_program([*command, str(seed + trial)], EXPONENTIAL, Settings(), Timeouts(5, 0.3, 0.1)).verdict
         assert verdict.outcome == "rejected", seed + trial
         assert "the program" in str(verdict)
+
+
+@pytest.mark.parametrize(("key", "value"), [("columns", ["x"]), ("type", "float32")])
+def test_what_a_greeting_says_is_no_key_of_a_programs_spec(tmp_path, key, value):
+    with pytest.raises(InvalidInputError, match=f"{key} is of files"):
+        judged(program(tmp_path), {**EXPONENTIAL, key: value})

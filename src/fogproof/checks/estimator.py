@@ -90,12 +90,13 @@ def check_estimator(
     sizes, looks = _looks(samples, alpha, resolution)
     source = Source(draw, seed, tuple(sizes), _channels_of(reference), "draws", precision)
     seen: Observed | None = None
-    judgement = Judgement((), False)
+    judgement, ordered = Judgement((), False), False
     for index, (draws, calls) in enumerate(source.batches()):
         if seen is None:
             stderr = None if draws.stderr is None else column(draws.stderr)
             seen = Observed.of(quantities_of(reference, declared, stderr), draws, labels)
         before, seen = seen.n, seen.after(draws, calls)
+        ordered |= draws.order is not None
         doing(f"realisation {seen.n} of {samples} at most")
         due = [share for size, share in looks.items() if before < size <= seen.n]
         complete = seen.n == samples
@@ -116,6 +117,7 @@ def check_estimator(
     seconds = time.perf_counter() - started
     cause = likely_cause(findings)
     untested = tuple(finding.message for finding in findings if finding.check == "other orders")
+    untested += ("orders (give references by order, {label: expectation})",) if ordered and labels is None else ()
     return Verdict(tuple(findings), alpha, seen.n, seed, seconds, settings, cause, reproduce, unchecked=untested)
 
 

@@ -20,7 +20,7 @@ from fogproof.domains import Discrete
 from fogproof.errors import InvalidInputError, NotInstalledError, SubjectError
 from fogproof.pipe.columns import columns_of
 from fogproof.pipe.entries import with_its_table
-from fogproof.pipe.estimator import PipeEstimator, draws_of
+from fogproof.pipe.estimator import PipeEstimator, by_order, draws_of
 from fogproof.pipe.faults import BROKEN, ProgramError
 from fogproof.pipe.files import read_rows
 from fogproof.pipe.process import Timeouts
@@ -71,6 +71,11 @@ def check_program(
     """
     settings = settings or Settings()
     table, origin = (spec, "spec") if isinstance(spec, Mapping) else (read_table(spec), str(spec))
+    for name in ("columns", "type"):
+        if name in table:
+            raise InvalidInputError(
+                f"{origin}: {name} is of files; a program says it in its greeting: leave it out", name
+            )
     base = spec_of(table, origin)
     program: Program | None = None
     try:
@@ -127,7 +132,9 @@ def _of_file(path: Path, base: Spec, settings: Settings) -> Checked:
             "seed": settings.seed,
             **_estimator_options(base, precision),
         }
-        return Checked(check_estimator(draws_of(rows, columns), expectation_of(base), **options))
+        reference = by_order(expectation_of(base), base, columns)
+        return Checked(check_estimator(draws_of(rows, columns), reference, **options))
+    _require_labels(base, columns)
     truth = truth_of(base, precision)
     hint = misread(truth.domain, rows, columns, truth.density and partial(_value, truth))
     if hint:
@@ -213,8 +220,10 @@ def _member(program: Program, spec: Spec) -> tuple[PipeSampler | PipeEstimator, 
     if greeting.type == "float32" and precision == "float64":
         raise program.refuse('writes float32 numbers where the spec says precision = "float64"')
     if not spec.samples_points:
-        reference, options = expectation_of(spec), _estimator_options(spec, precision)
+        reference = by_order(expectation_of(spec), spec, greeting.columns)
+        options = _estimator_options(spec, precision)
         return PipeEstimator(program, spec.dimensions, precision, spec.parameters, reference, options), None
+    _require_labels(spec, greeting.columns)
     truth = truth_of(spec, precision)
     program.notes += truth.notes
     given, wanted = len(greeting.places("x")), int(np.prod(truth.domain.shape, dtype=int))
@@ -228,6 +237,12 @@ def _member(program: Program, spec: Spec) -> tuple[PipeSampler | PipeEstimator, 
     atoms, dimensions = truth.atoms, spec.dimensions
     sampler = PipeSampler(program, truth.domain, dimensions, precision, atoms, spec.parameters, law, options)
     return sampler, truth.most
+
+
+def _require_labels(spec: Spec, columns: tuple[str, ...]) -> None:
+    if spec.events and "event" not in columns:
+        fix = "write one with every sample, or leave events out"
+        raise InvalidInputError(f"events are declared, and there is no column event; {fix}", "events")
 
 
 def _sampler_options(spec: Spec, truth: KnownLaw, precision: Precision, reference: Any) -> dict[str, Any]:

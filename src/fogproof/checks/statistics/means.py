@@ -10,6 +10,7 @@ bring within declared bounds is allowed for.
 from __future__ import annotations
 
 import math
+import sys
 from dataclasses import replace
 
 from fogproof.checks.statistics.binomial import binomial_p
@@ -27,6 +28,7 @@ from fogproof.checks.verdict import Finding, Outcome, Resolution
 LARGEST_CORRECTION = 1.0  # of the exponent |skewness| z^3 / (3 sqrt n); beyond it the expansion is not trusted
 LARGEST_SHARE = 0.05  # of one sample in the sum of squares; beyond it the variance itself may be infinite
 _ROUNDING = 16 * 2.0**-53  # relative: of values, and of their sum
+_UNDERFLOW = sys.float_info.min  # an error below it is what rounding leaves of an exact 0
 _LEAST = 100  # samples, below which none but declared facts tells anything
 _SHORT = 4.0  # standard deviations by which a sample's variance may fall short of the declared one
 DOUBT = 0.01
@@ -67,7 +69,7 @@ def mean_test(
         p = extremes_p(data, reference - error, reference + error, known)
         if p <= alpha - share:
             finding = replace(finding, p_value=max(p, finding.p_value), exact=False, distribution_free=True)
-    if finding.outcome == "not rejected" and uncertain > abs(reference) and uncertain > data.stderr:
+    if finding.outcome == "not rejected" and uncertain > max(abs(reference), data.stderr, _UNDERFLOW):
         coarse = f"the reference is known too coarsely, to within {uncertain:.2g}, to tell it from nothing{_FINER}"
         message = f"{finding.message}; {coarse}"
         finding = replace(finding, outcome="inconclusive", message=message, p_value=None, resolution=None)
