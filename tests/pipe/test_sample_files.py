@@ -223,7 +223,7 @@ def test_no_row_is_too_early_to_be_looked_at(tmp_path, row):
     x = paths(20_000)
     x[row] = np.nan
     verdict = check_file(written(tmp_path / "x.npy", x), PATHS).verdict
-    assert (verdict.outcome, verdict.cause) == ("rejected", "outside the domain"), verdict
+    assert (verdict.outcome, verdict.cause) == ("rejected", "not a number"), verdict
 
 
 def test_a_table_whose_integral_is_wrong_says_what_to_divide_by(tmp_path):
