@@ -158,7 +158,7 @@ def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) ->
             words = "; ".join(f"{v['check']}: {v['outcome']}, alpha {v['alpha']:.2g}" for v in own)
             item.user_properties.append(("fogproof", words))
         lost = [why for *_, why in found if why]
-        if lost and report.passed and not hasattr(report, "wasxfail"):
+        if lost and not report.failed and not hasattr(report, "wasxfail"):
             fix = "if that is what you expect, call the package itself (import fogproof), and look at the verdict"
             report.outcome = "failed"
             report.longrepr = f"{'; '.join(lost)}, though the exception has not ended the test; {fix}"

@@ -109,6 +109,24 @@ def test_renders_of_ones_own_are_judged_kept_and_told(tmp_path):
     assert "wall" in (folder / "index.html").read_text()
 
 
+def test_no_renders_replace_what_others_wrote_or_leave_their_folder(tmp_path):
+    own, folder = tmp_path / "own.py", tmp_path / "out"
+    own.write_text(OWN)
+    (tmp_path / "wall.toml").write_text(WALL)
+    (tmp_path / "...toml").write_text(WALL)
+    command = f"{sys.executable} {own} {{scene}} {{out}}.npy 1"
+    (folder / "wall").mkdir(parents=True)
+    for name in ("results.json", "maps.exr", "image.exr", "row.json"):
+        (folder / "wall" / name).write_text("mine")
+        told = run("render", tmp_path / "wall.toml", "--with", command, "-o", folder)
+        assert f"{name} was not written by fogproof" in str(told.exception)
+        assert (folder / "wall" / name).read_text() == "mine"
+        (folder / "wall" / name).unlink()
+    away = run("render", tmp_path / "...toml", "--with", command, "-o", folder)
+    assert "rename it" in str(away.exception)
+    assert run("render", tmp_path / "wall.toml", "--with", command, "-o", folder).return_value == 0
+
+
 SCENES_LAMP = WALL.replace('"none"', '"single"') + "light = { position = [0, 1, 1], intensity = 1 }\n"
 
 

@@ -63,13 +63,19 @@ def command(
     \b
     Example:  fogproof render scenes/images/*.toml --with mitsuba -o build/mitsuba
     """
+    from fogproof.images.scene_names import scene_names
+    from fogproof.reports.files import prepare_folder
     from fogproof.scene.files import read_image_scenes
 
     wanted = Wanted(renderer_of(renderer), samples, seed, tolerance, alpha, python, seconds)
     read_image_scenes(scenes)  # what cannot be read is told before hours of rendering
+    names = scene_names(scenes)
     take(folder, ("index.html", "results.json"), force)
+    for name in names:
+        if (folder / name).exists():
+            prepare_folder(folder / name, ("index.html", "results.json", "row.json", "maps.exr", "image.exr"), force)
     rows: list[dict[str, Any]] = []
-    width = max(len(path.stem) for path in scenes)
+    width = max(map(len, names))
     with interruptible() as stop:
         for row in render_scenes(scenes, wanted, folder):
             rows.append(row)

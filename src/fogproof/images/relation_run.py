@@ -13,9 +13,10 @@ from typing import Any
 
 import numpy as np
 
-from fogproof.errors import FogproofError, InvalidInputError, UnsupportedError
+from fogproof.errors import FogproofError, UnsupportedError
 from fogproof.images.battery import Battery, ImageRelation, image_relations, planned
 from fogproof.images.picture import read_picture
+from fogproof.images.scene_names import scene_names
 from fogproof.relations import Comparison, ImageSetting
 from fogproof.renderers.running import RenderFailure, code_of, render_one
 from fogproof.renderers.table import Renderer
@@ -55,10 +56,7 @@ def run_relations(scenes: Sequence[Path], run: RelationRun, folder: Path) -> Ite
 
     Outcomes are "not rejected", "rejected", "inconclusive", "not rendered" (the renderer has no such thing) and "error".
     """
-    names = [path.stem for path in scenes]
-    if len(set(names)) < len(names):
-        twice = next(name for name in names if names.count(name) > 1)
-        raise InvalidInputError(f"two scenes have the name {twice}: their renders would be one", twice)
+    scene_names(scenes)
     for path in scenes:
         try:
             scene = read_image_scene(path)

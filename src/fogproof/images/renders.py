@@ -10,9 +10,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from fogproof.errors import FogproofError, InvalidInputError
+from fogproof.errors import FogproofError
 from fogproof.images.compare import compare_image
 from fogproof.images.report import write_comparison
+from fogproof.images.scene_names import scene_names
 from fogproof.renderers.running import RenderFailure, code_of, render_one
 from fogproof.renderers.table import Renderer
 from fogproof.reports.files import write_file
@@ -50,10 +51,7 @@ def render_scenes(scenes: Sequence[Path], wanted: Wanted, folder: Path) -> Itera
 
     A row says "not rejected", "rejected", "inconclusive", "not rendered" (the renderer has no such thing) or "error".
     """
-    names = [path.stem for path in scenes]
-    if len(set(names)) < len(names):
-        twice = next(name for name in names if names.count(name) > 1)
-        raise InvalidInputError(f"two scenes have the name {twice}: their images would be one", twice)
+    scene_names(scenes)
     for path in scenes:
         place = folder / path.stem
         try:
@@ -67,7 +65,7 @@ def render_scenes(scenes: Sequence[Path], wanted: Wanted, folder: Path) -> Itera
             started = time.perf_counter()
             row = _render(path, scene, wanted, place)
             row["seconds"] = f"{time.perf_counter() - started:.1f}"
-            write_file(place / "row.json", json.dumps({"key": key, "row": row}, indent=1))
+            write_file(place / "row.json", json.dumps({"format": "fogproof-row-1", "key": key, "row": row}, indent=1))
         yield row
 
 
