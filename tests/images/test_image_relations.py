@@ -385,3 +385,5 @@ def test_a_program_that_fails_ends_its_scene_with_its_last_words(tmp_path):
 
 def test_a_name_that_no_relation_has_is_told(tmp_path):
     assert "no relation of these scenes is named luck" in str(relations(tmp_path, "--only", "luck").exception)
+    twice = relations(tmp_path, "--only", "turned", "--only", "luck", scene="sun")
+    assert "named luck" in str(twice.exception)

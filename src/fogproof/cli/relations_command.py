@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fnmatch
 import json
 import sys
 from pathlib import Path
@@ -96,8 +97,9 @@ def command(
             write_record(rows, run, folder, asked, whole=False)
     if stop.code:
         say(f"stopped after {len(rows)} of {asked} relations; what was rendered is kept", err=True)
-    if only and not rows and not stop.code:
-        raise click.UsageError(f"no relation of these scenes is named {' or '.join(only)}")
+    missed = [pattern for pattern in only if not any(fnmatch.fnmatchcase(row["relation"], pattern) for row in rows)]
+    if missed and not stop.code and all(row["relation"] for row in rows):
+        raise click.UsageError(f"no relation of these scenes is named {' or '.join(missed)}")
     say(f"report: {write_record(rows, run, folder, asked, whole=not stop.code)}", err=True)
     outcomes = {row["outcome"] for row in rows}
     return stop.code or (1 if "rejected" in outcomes else 0 if outcomes <= {"not rejected"} else 3)

@@ -20,6 +20,7 @@ from fogproof.images.faults import faults, notes
 from fogproof.images.picture import RenderedImage
 from fogproof.images.pooled import pooled_tests
 from fogproof.images.residuals import Residuals
+from fogproof.images.unlike import one_unlike
 from fogproof.scene import ImageScene
 
 ALPHA = 1e-6
@@ -90,6 +91,8 @@ def judge(
         findings.append(_exactly(found))
     elif how.kind == "shared":
         findings += _by_render(picture, found, alpha)
+        odd = one_unlike(picture, alpha)
+        findings += [odd] if odd else []
     else:
         pooled, more = pooled_tests(
             in_cells(found) if how.kind == "neighbours" else found, alpha, picture.names, positive=not files
