@@ -147,6 +147,8 @@ def test_a_renderer_that_fails_is_an_error_and_no_verdict(tmp_path, command, wor
 
 
 def test_what_is_no_renderer_is_said():
+    with pytest.raises(FogproofError, match="No closing quotation"):
+        renderer_of("sh -c 'unclosed {scene} {out}")
     with pytest.raises(FogproofError, match="is none of mitsuba, cycles"):
         renderer_of("arnold")
 

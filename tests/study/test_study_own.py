@@ -11,6 +11,7 @@ from fogproof.errors import FogproofError
 from fogproof.study import read_study, run_study
 from fogproof.study.cells import cells_of, prepare
 from fogproof.study.files import differences
+from fogproof.study.trial import try_own
 
 MINE = """
     import numpy as np
@@ -203,3 +204,12 @@ def test_what_ends_its_process_later_costs_its_own_results_alone(tmp_path, capsy
     told = capsys.readouterr().err
     assert told.count("failed 1 times: the worker that drew it died, and ") == 1
     assert (tmp_path / "run" / "index.html").exists()
+
+
+def test_who_ignores_the_generator_is_told_before_anything_runs(tmp_path):
+    """Hits and misses from one seed; and equal numbers, which need no chance."""
+    ignoring = MINE.replace("u = rng.random((n, 1))", "u = np.random.default_rng(5).random((n, 1))")
+    with pytest.raises(FogproofError, match="the same realisations whatever rng is; take all chance from rng"):
+        try_own(read_study(study_file(tmp_path / "a", [{"kind": "my_module:Analog"}], ignoring)))
+    exact = MINE.replace("-np.log1p(-u) > self.tau", "0 * u + np.exp(-self.tau)").replace("p * (1 - p)", "0.0")
+    try_own(read_study(study_file(tmp_path / "b", [{"kind": "my_module:Analog"}], exact)))

@@ -67,7 +67,11 @@ def renderer_of(name_or_command: str) -> Renderer:
         known = ", ".join(RENDERERS)
         what = f"--with {name_or_command!r}: is none of {known}, and no command with {{scene}} and {{out}} in it"
         raise InvalidInputError(what, "with")
-    return Renderer(Path(shlex.split(name_or_command)[0]).name, name_or_command)
+    try:
+        words = shlex.split(name_or_command)
+    except ValueError as error:
+        raise InvalidInputError(f"--with {name_or_command!r}: {error}", "with") from None
+    return Renderer(Path(words[0]).name, name_or_command)
 
 
 def command_of(renderer: Renderer, values: dict[str, str]) -> list[str]:

@@ -7,13 +7,15 @@ from functools import partial
 import numpy as np
 
 from fogproof.checks.limits import isolated
-from fogproof.errors import FogproofError
+from fogproof.errors import FogproofError, SubjectError
 from fogproof.study.cells import told_of
 from fogproof.study.drawn import numbers_of
 from fogproof.study.files import Study, study_of
 from fogproof.study.methods.own import Own
 from fogproof.study.methods.table import name_of
 
+_FEW, _OFTEN = 32, 5
+"""Realisations that are drawn from so many generators: hits and misses of any share agree in all with probability 6e-9 at most."""
 WORKER = "fogproof.study.batches"
 """What takes a worker long to load."""
 
@@ -38,4 +40,9 @@ def _call(text: str, folder: str, number: int, place: int) -> None:
     scene = study_of(text, folder).scenes[number]
     method = scene.estimators[place]
     _ = method.dimensions
-    numbers_of(name_of(method), method.make(scene, 0).draw(np.random.default_rng(0), 1), 1)
+    name, estimator = name_of(method), method.make(scene, 0)
+    numbers_of(name, estimator.draw(np.random.default_rng(0), 1), 1)
+    drawn = np.array([numbers_of(name, estimator.draw(np.random.default_rng(k), _FEW), _FEW)[0] for k in range(_OFTEN)])
+    if np.ptp(drawn[0]) > 0 and np.array_equal(drawn, np.broadcast_to(drawn[0], drawn.shape)):
+        fix = "take all chance from rng"
+        raise SubjectError(f"{name}: draw(rng, {_FEW}) returns the same realisations whatever rng is; {fix}", "draw")
