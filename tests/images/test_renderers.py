@@ -99,7 +99,9 @@ def test_renders_of_ones_own_are_judged_kept_and_told(tmp_path):
     assert "this renderer knows no scattering" in rows[1]["reason"]
     assert ran.return_value == 3
     first = (folder / "wall" / "row.json").stat().st_mtime_ns
-    assert run("render", tmp_path / "wall.toml", "--with", command, "-o", folder).return_value == 0
+    again = run("render", tmp_path / "wall.toml", "--with", command, "-o", folder)
+    assert again.return_value == 0
+    assert "kept: neither the scene nor the command has changed" in again.stdout
     assert (folder / "wall" / "row.json").stat().st_mtime_ns == first
     row = folder / "wall" / "row.json"
     row.write_text(row.read_text().replace("not rejected", "splendid"))

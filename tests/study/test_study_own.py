@@ -1,6 +1,8 @@
 """One's own estimator in a study: judged like any other, never mixed with what an older state of its source drew."""
 
 import json
+import subprocess
+import sys
 import textwrap
 
 import pytest
@@ -206,10 +208,27 @@ def test_what_ends_its_process_later_costs_its_own_results_alone(tmp_path, capsy
     assert (tmp_path / "run" / "index.html").exists()
 
 
+def test_what_it_prints_is_no_part_of_the_record(tmp_path):
+    chatty = "print('loading')\n" + textwrap.dedent(MINE).replace(
+        "u = rng.random((n, 1))", "print('drawing'); u = rng.random((n, 1))"
+    )
+    path = study_file(tmp_path / "s", [{"kind": "my_module:Analog"}], chatty)
+    words = [sys.executable, "-m", "fogproof", "study", str(path), "-o", str(tmp_path / "out"), "--json"]
+    ran = subprocess.run(words, capture_output=True, text=True)
+    assert json.loads(ran.stdout)["scenes"], ran.stderr
+    assert "drawing" in ran.stderr
+    assert "loading" in ran.stderr
+
+
 def test_who_ignores_the_generator_is_told_before_anything_runs(tmp_path):
     """Hits and misses from one seed; and equal numbers, which need no chance."""
     ignoring = MINE.replace("u = rng.random((n, 1))", "u = np.random.default_rng(5).random((n, 1))")
-    with pytest.raises(FogproofError, match="the same realisations whatever rng is; take all chance from rng"):
+    with pytest.raises(FogproofError, match="the same realisations though rng is another; take all chance from rng"):
         try_own(read_study(study_file(tmp_path / "a", [{"kind": "my_module:Analog"}], ignoring)))
+    three = ignoring.replace("default_rng(5)", "default_rng(int(rng.integers(3)))").replace(
+        "(-np.log1p(-u) > self.tau)", "u"
+    )
+    with pytest.raises(FogproofError, match="take all chance from rng"):
+        try_own(read_study(study_file(tmp_path / "c", [{"kind": "my_module:Analog"}], three)))
     exact = MINE.replace("-np.log1p(-u) > self.tau", "0 * u + np.exp(-self.tau)").replace("p * (1 - p)", "0.0")
     try_own(read_study(study_file(tmp_path / "b", [{"kind": "my_module:Analog"}], exact)))

@@ -90,4 +90,5 @@ def command(
 
 def _line(row: dict[str, Any], width: int) -> str:
     told = f"{row['scene']:{width}}  {row['outcome']:12}  {row['ratio']:38}  {row['resolution']:8}  {row['seconds']:>6}"
-    return f"{told}  {row['reason']}".rstrip()
+    kept = "  (kept: neither the scene nor the command has changed)" if row.get("kept") else ""
+    return f"{told}  {row['reason']}".rstrip() + kept

@@ -91,7 +91,7 @@ def judge(
         findings.append(_exactly(found))
     elif how.kind == "shared":
         findings += _by_render(picture, found, alpha)
-        odd = one_unlike(picture, alpha)
+        odd = one_unlike(picture, found, alpha)
         findings += [odd] if odd else []
     else:
         pooled, more = pooled_tests(

@@ -49,7 +49,8 @@ class Wanted:
 def render_scenes(scenes: Sequence[Path], wanted: Wanted, folder: Path) -> Iterator[dict[str, Any]]:
     """Render and compare each scene, and yield its row as soon as it is known; what was done before is taken as it is.
 
-    A row says "not rejected", "rejected", "inconclusive", "not rendered" (the renderer has no such thing) or "error".
+    A row says "not rejected", "rejected", "inconclusive", "not rendered" (the renderer has no such thing) or "error", and `kept`
+    if nothing was rendered for it.
     """
     scene_names(scenes)
     for path in scenes:
@@ -66,6 +67,8 @@ def render_scenes(scenes: Sequence[Path], wanted: Wanted, folder: Path) -> Itera
             row = _render(path, scene, wanted, place)
             row["seconds"] = f"{time.perf_counter() - started:.1f}"
             write_file(place / "row.json", json.dumps({"format": "fogproof-row-1", "key": key, "row": row}, indent=1))
+        else:
+            row = {**row, "kept": True}
         yield row
 
 

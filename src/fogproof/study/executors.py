@@ -83,6 +83,8 @@ def _as_worker() -> None:
     A worker that outlives it would wait for work for ever, and keep open what its parent's output is read from.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    with contextlib.suppress(OSError):
+        os.dup2(2, 1)  # what an estimator prints is no part of the study's answer
     parent = multiprocessing.parent_process()
     assert parent is not None
     with contextlib.suppress(RuntimeError):  # where no more threads may be started nothing watches

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import contextlib
 import hashlib
 import importlib
 import importlib.util
@@ -43,7 +44,7 @@ def loaded(module: str, folder: str) -> ModuleType:
             import_from(str(root))
         importlib.invalidate_caches()
         try:
-            with loading():
+            with loading(), contextlib.redirect_stdout(sys.stderr):
                 found = importlib.import_module(module)
         except SyntaxError as error:
             where = Path(error.filename or module).name
