@@ -211,8 +211,6 @@ def test_what_ends_its_process_later_costs_its_own_results_alone(tmp_path, capsy
 def test_what_it_prints_is_no_part_of_the_record(tmp_path):
     spoken = MINE.replace("u = rng.random((n, 1))", "print('drawing'); u = rng.random((n, 1))")
     chatty = "print('loading')\n" + textwrap.dedent(spoken)
-        "u = rng.random((n, 1))", "print('drawing'); u = rng.random((n, 1))"
-    )
     path = study_file(tmp_path / "s", [{"kind": "my_module:Analog"}], chatty)
     words = [sys.executable, "-m", "fogproof", "study", str(path), "-o", str(tmp_path / "out"), "--json"]
     ran = subprocess.run(words, capture_output=True, text=True)
