@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.special import ndtri
 
-from fogproof import Discrete, HalfLine, Product, RealLine, Rotations, UnitDisk, check_sampler
+from fogproof import Discrete, HalfLine, Interval, Product, RealLine, Rotations, UnitDisk, check_sampler
 
 N = 30_000
 TEN = np.array([0.19, 0.03, 0.13, 0.07, 0.11, 0.09, 0.12, 0.08, 0.1, 0.08])
@@ -81,3 +81,34 @@ def test_the_cause_is(name):
     verdict = check_sampler(sample, pdf, domain, dimensions=dimensions, samples=N)
     assert (verdict.outcome, verdict.cause) == ("rejected", cause), str(verdict)
     assert words in verdict.diagnosis, verdict.diagnosis
+
+
+def test_one_entry_too_probable_is_no_constant_factor():
+    """The table sums to 1.01, but its other entries are right: enough samples show that."""
+    w = np.array([0.1, 0.25, 0.05, 0.4, 0.2])
+
+    def table(x):
+        return np.where(x == 2, 0.06, w[x.astype(int)])
+
+    def entry(u):
+        return np.searchsorted(np.cumsum(w)[:-1], u[:, 0], side="right").astype(float)
+
+    verdict = check_sampler(entry, table, Discrete(5), dimensions=1, samples=400_000, seed=1)
+    assert verdict.cause == "few entries", str(verdict)
+    constant = check_sampler(
+        entry, lambda x: 1.01 * w[x.astype(int)], Discrete(5), dimensions=1, samples=400_000, seed=1
+    )
+    assert constant.cause == "normalisation", str(constant)
+
+
+def test_samples_that_are_nearly_all_one_point_are_no_other_law():
+    """An exponential a million times too long, clamped to 1: turned round it would fit, were it not a single point."""
+
+    def clamped(u):
+        return np.minimum(-np.log1p(-u[:, 0]) * 1000, 1.0)
+
+    def pdf(x):
+        return 1000 * np.exp(-1000 * x)
+
+    verdict = check_sampler(clamped, pdf, Interval(0.0, 1.0), dimensions=1, samples=40_000, seed=1)
+    assert verdict.cause in ("atom", "clamped"), str(verdict)

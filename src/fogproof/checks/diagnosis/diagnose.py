@@ -21,6 +21,7 @@ from fogproof.checks.streams import batch_generator
 from fogproof.checks.subject import Subject
 from fogproof.checks.verdict import Finding
 from fogproof.domains import Product
+from fogproof.domains.law import whole_columns
 from fogproof.errors import shorten
 
 _PLACES = {"skipped band", "missing tail", "missing patch"}  # told by one place alone: only if that explains the misfit
@@ -35,6 +36,7 @@ _SYMPTOMS = {
     "wrong formula",
     "edge of the uniforms",
 }  # that a wrong law brings along
+_MOSTLY = 0.5  # of the samples at single points: a law without them is not what went wrong
 _RIGHT = 0.8  # of a misfit that a place beyond the samples explains
 _MISFIT = 4.0  # standard deviations of a chi-square that is no chance
 _LOOKED = 1 << 14  # samples among which single points are looked for
@@ -75,6 +77,9 @@ def diagnosed(
 def _explained(subject: Subject, cause: str, findings: Sequence[Finding], samples: int, seed: int) -> tuple[str, str]:
     """Return the cause and the words; what accounts for a share of the samples does not explain a law that is wrong beside it."""
     named, words, rest = ("", "", subject) if cause in _CONSTANT else single_points(subject, samples, seed)
+    often = 0.0 if all(whole_columns(subject.domain)) else sum(rest.atoms.values()) - sum(subject.atoms.values())
+    if named == "atom" and often > _MOSTLY:
+        return named, words
     if named != "clamped" and cause != "atom" and cause not in _SHARES:
         return _searched(subject, cause, findings, samples, seed)
     if named == "clamped":  # with what lies beyond: all of its misfit
@@ -111,7 +116,8 @@ def _searched(
         if integral is not None and _off_by_atoms(integral, findings, samples):
             return "wrong probability of an atom", rejected["atom"].message
         if integral is not None:
-            return _constant(subject, integral, cause, samples, seed)
+            shaped = any(f.p_value is not None and f.cause in _STATISTICAL for f in rejected.values())
+            return _constant(subject, integral, cause, min(samples, SIZES[-1 if shaped else 0]), seed)
     shown = contrasted(subject, samples, seed)
     if shown is None:
         return cause, ""
@@ -186,8 +192,11 @@ def _exponential(subject: Subject, samples: int, seed: int) -> str:
 
 
 def _constant(subject: Subject, integral: Finding, cause: str, samples: int, seed: int) -> tuple[str, str]:
-    """Return what a wrong integral of the pdf comes from: a constant that can be named, or a pdf where nothing is sampled."""
-    setting = setting_of(subject, min(SIZES[0], samples), seed)
+    """Return what a wrong integral of the pdf comes from: a constant that can be named, or a pdf where nothing is sampled.
+
+    samples  that are looked at: as many as show that the pdf's shape is wrong too, where it is
+    """
+    setting = setting_of(subject, samples, seed)
     if setting is None or integral.effect is None:
         return cause, ""
     base = setting.contrast.fit(setting.p(setting.contrast.points))

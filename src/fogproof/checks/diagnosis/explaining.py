@@ -43,20 +43,6 @@ def explanation(subject: Subject, setting: Setting, base: Fit, samples: int, see
     best = found[0]
     gain, share = explained_by(many, best)
     needed = _FITS if best.hypothesis.cause == "another law" else _EXPLAINS
-    import os
-
-    if os.environ.get("DIAG"):
-        print(
-            "   DIAG",
-            len(many.contrast.x),
-            [(f.cause, f.words, round(f.score - best.score, 2)) for f in found],
-            "gain",
-            gain,
-            "share",
-            share,
-            "shape",
-            unexplained(many.contrast, many.p(many.contrast.points)),
-        )
     if (
         gain < _STANDS_OUT
         or share < needed
