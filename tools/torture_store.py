@@ -2,8 +2,8 @@
 
 python tools/torture_store.py --bits 500 --pages 50 --fields 10
 
-Fields are those of the tables as they stand in the file, each `--fields` times in a row chosen at random: a column that is new is among
-them by itself.
+Fields are those of the tables as they stand in the file, each changed `--fields` times in a row chosen at random: a column that is
+new is among them by itself.
 
 For each change: the record is made from the changed file. It must be the undisturbed one to the last digit, times included, or the
 store must say that it is damaged; then `salvage` must lead to the undisturbed statistics.
@@ -19,7 +19,7 @@ import sys
 import tempfile
 from collections import Counter
 from collections.abc import Callable
-from contextlib import closing
+from contextlib import closing, suppress
 from pathlib import Path
 from typing import Any
 
@@ -83,9 +83,11 @@ def change_field(table: str, key: str, column: str) -> Change:
 
     def change(path: Path, rng: random.Random) -> str:
         with closing(sqlite3.connect(path)) as connection, connection:
-            which, old = rng.choice(connection.execute(f"select {key}, {column} from {table}").fetchall())
-            connection.execute(f"update {table} set {column} = ? where {key} = ?", (changed(old, rng), which))
-        return f"{column} of {table} {which}"
+            while True:
+                which, old = rng.choice(connection.execute(f"select {key}, {column} from {table}").fetchall())
+                with suppress(sqlite3.IntegrityError):  # another row has this key
+                    connection.execute(f"update {table} set {column} = ? where {key} = ?", (changed(old, rng), which))
+                    return f"{column} of {table} {which}"
 
     return change
 
