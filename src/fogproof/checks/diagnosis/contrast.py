@@ -94,10 +94,16 @@ class Contrast:
 
     def part(self, n: int) -> Contrast:
         """Return the contrast of the first n samples and as many evenly chosen known points."""
-        if n >= len(self.x):
+        kept = self.kept(n)
+        if kept is None:
             return self
-        keep = np.concatenate([np.arange(n), len(self.x) + np.linspace(0, len(self.z) - 1, n).astype(int)])
-        return Contrast(self.law, self.tree, self.x[:n], self.z[keep[n:] - len(self.x)], self.q[keep], self.cell[keep])
+        return Contrast(self.law, self.tree, self.x[:n], self.z[kept[n:] - len(self.x)], self.q[kept], self.cell[kept])
+
+    def kept(self, n: int) -> np.ndarray | None:
+        """Return which of all points (2 n,) such a part has, None if it is the whole."""
+        if n >= len(self.x):
+            return None
+        return np.concatenate([np.arange(n), len(self.x) + np.linspace(0, len(self.z) - 1, n).astype(int)])
 
     def likelihood(self, s: np.ndarray) -> float:
         """Return the logarithm of the likelihood of the labels under a density with values s (n + m,), samples first."""

@@ -199,7 +199,7 @@ def _constant(subject: Subject, integral: Finding, cause: str, samples: int, see
     setting = setting_of(subject, samples, seed)
     if setting is None or integral.effect is None:
         return cause, ""
-    base = setting.contrast.fit(setting.p(setting.contrast.points))
+    base = setting.contrast.fit(setting.values)
     if base.left > _MISFIT * math.sqrt(2 * base.freedom):
         found = likeliest(setting, base, list(holes.hypotheses(setting))[:-1])
         if found and explained_by(setting, found[0])[1] > _RIGHT and abs(found[0].fit.constant - 1) < 0.1:

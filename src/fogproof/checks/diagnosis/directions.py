@@ -126,9 +126,7 @@ def _turned(setting: Setting, frame: np.ndarray) -> Setting:
     """Return what hypotheses may look at in another frame, of orthonormal rows (3, 3)."""
     contrast = setting.contrast
     turned = replace(contrast, x=contrast.x @ frame.T, z=contrast.z @ frame.T)
-    other = replace(setting, claim=lambda y: setting.p(y @ frame), contrast=turned)
-    other.__dict__["_at_points"] = setting.p(contrast.points)
-    return other
+    return replace(setting, claim=lambda y: setting.p(y @ frame), contrast=turned)
 
 
 def _cone(setting: Setting) -> Iterator[Hypothesis]:
@@ -206,7 +204,7 @@ def _cells(setting: Setting) -> tuple[np.ndarray, np.ndarray] | None:
     """Return where cells are, (m, 3), and how many samples they have over what the claim expects, (m,); None of too few cells."""
     contrast = setting.contrast
     n, cells = len(contrast.x), int(contrast.cell.max()) + 1
-    weight = setting.p(contrast.points)[n:] / contrast.q[n:]
+    weight = setting.values[n:] / contrast.q[n:]
     seen = np.bincount(contrast.cell[:n], minlength=cells)
     expected = np.bincount(contrast.cell[n:], weight, cells) * n / max(float(weight.sum()), 1e-300)
     full = (seen >= _PER_CELL) & (expected >= _PER_CELL)
