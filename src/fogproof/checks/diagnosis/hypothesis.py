@@ -97,6 +97,7 @@ class Hypothesis:
     fitted   how many parameters were taken from the samples beforehand
     named    parameter -> what it is better known as, "" if it is nothing special
     null     the parameter with which it is the claim itself, None if there is none
+    prior    logarithm of how much likelier it is than others before any sample is seen
     otherwise  the class of error where the parameter is no whole or half number, `cause` unless given
     """
 
@@ -106,6 +107,7 @@ class Hypothesis:
     trials: tuple[float, ...] = ()
     named: Callable[[float, float], str] = field(default=lambda value, error: "")
     fitted: int = 0
+    prior: float = 0.0
     otherwise: str = ""
     null: float | None = None
 
@@ -116,8 +118,8 @@ class Hypothesis:
         return self.otherwise if self.otherwise and not simple else self.cause
 
     def price(self, n: int) -> float:
-        """Return what the parameters cost on n samples, in log-likelihood (Schwarz 1978)."""
-        return 0.5 * math.log(n) * (bool(self.trials) + self.fitted)
+        """Return what the parameters cost on n samples, in log-likelihood (Schwarz 1978), less what was known before."""
+        return 0.5 * math.log(n) * (bool(self.trials) + self.fitted) - self.prior
 
     def said(self, value: float, error: float) -> str:
         """Return the explanation with the fitted parameter and its standard error."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -13,6 +14,11 @@ from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting
 _ALONG = 0.03  # from a coordinate axis: such a lobe is meant to be about it
 _LINEAR = 1e-6  # share of the variance of a logarithm that a line leaves
 _CONSTANT = 0.02  # deviation of the logarithm of a ratio of two lobes that are one
+_FAMILY = math.log(20)  # a law of one parameter is likelier off by this than by anything else that has one
+_TOP, _EDGE = 0.9, 0.02  # share of a claim that lies below its top, and beyond its skirts
+_SKIRTS = 0.1  # of the greatest density of a lobe
+_TOGETHER = 0.5  # mean length of the directions at the top of a lobe
+_FALLS = 0.7  # rank correlation of a lobe's density with the cosine to its top
 _LEAN = 0.03  # mean length of directions that have a direction
 
 
@@ -33,22 +39,46 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
     kappas = (0.5, 2.0, 8.0, 32.0, 128.0, 1000.0)
     kappa = _kappa(setting, axis)
     near = () if kappa is None else (0.9 * kappa, 1.1 * kappa)
-    for law, f, trials, null in (
+    laws = (
         ("Henyey-Greenstein with g", henyey_greenstein, g, _own(setting, axis, henyey_greenstein)),
         ("Schlick's phase function with k", schlick, g, _own(setting, axis, schlick)),
         ("a von Mises-Fisher lobe with kappa", _fisher, tuple(sorted({*kappas, *near})), kappa),
-    ):
+    )
+    for law, f, trials, null in laws:
         yield Hypothesis(
             "another law" if null is None else "another parameter",
             f"these samples fit {law} = {{value}}" + (own if null is None else f"; the pdf's is {null:.4g}"),
             about(f, null),
             trials,
             fitted=null is None,  # which law
+            prior=0.0 if null is None else _FAMILY,
             null=null,
+        )
+    if all(null is None for *_, null in laws) and _lobe(setting):
+        yield Hypothesis(
+            "another parameter",
+            "these samples fit the pdf raised to the power {value}, as of a broader or a narrower lobe",
+            lambda s, a: lambda x: np.maximum(s.p(x), 0.0) ** a,
+            (0.3, 0.6, 0.8, 0.95, 1.05, 1.25, 1.7, 3.0),
+            null=1.0,
         )
     yield Hypothesis(
         "another law", "these samples fit Rayleigh's phase function", about(lambda mu, _: 1 + mu * mu, None)
     )
+
+
+def _lobe(setting: Setting) -> bool:
+    """Return whether the claim falls from one direction on, down to little where it ends: a lobe, and no lit piece of a plane."""
+    x = setting.claimed_points(512)
+    p, n = setting.p(x), len(setting.contrast.x)
+    ends = bool(np.any(setting.values[n:] <= 0))
+    if ends and np.quantile(p, _EDGE) > _SKIRTS * p.max():
+        return False
+    top = x[p >= np.quantile(p, _TOP)].mean(axis=0)
+    if np.linalg.norm(top) < _TOGETHER:
+        return False
+    rank, place = (np.argsort(np.argsort(v)) for v in (p, x @ top))
+    return bool(np.corrcoef(rank, place)[0, 1] > _FALLS)
 
 
 def _fisher(mu: np.ndarray, kappa: float | np.ndarray) -> np.ndarray:
