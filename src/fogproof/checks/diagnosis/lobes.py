@@ -12,6 +12,7 @@ from fogproof.checks.diagnosis.contrast import Density
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting
 
 _ALONG = 0.03  # from a coordinate axis: such a lobe is meant to be about it
+_CHANCE = 5.0  # standard errors of a mean direction
 _LINEAR = 1e-6  # share of the variance of a logarithm that a line leaves
 _CONSTANT = 0.02  # deviation of the logarithm of a ratio of two lobes that are one
 _FAMILY = math.log(20)  # a law of one parameter is likelier off by this than by anything else that has one
@@ -27,7 +28,10 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
     mean = setting.claimed_mean()
     length = float(np.linalg.norm(mean))
     axis = mean / length if length > _LEAN else np.array([0.0, 0.0, 1.0])
-    axis = np.rint(axis) if np.linalg.norm(axis - np.rint(axis)) < _ALONG else axis
+    off = float(np.linalg.norm(axis - np.rint(axis)))
+    chance = _CHANCE / (length * math.sqrt(len(setting.contrast.x))) if length > _LEAN else 0.0
+    if off < _ALONG or (off < chance and _known(setting, np.rint(axis))):
+        axis = np.rint(axis)
     own = f"; the pdf's mean cosine is {length:.4g}" if length > _LEAN else ""
 
     def about(f: Callable[[np.ndarray, float], np.ndarray], null: float | None) -> Callable[[Setting, float], Density]:
@@ -65,6 +69,12 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
     yield Hypothesis(
         "another law", "these samples fit Rayleigh's phase function", about(lambda mu, _: 1 + mu * mu, None)
     )
+
+
+def _known(setting: Setting, axis: np.ndarray) -> bool:
+    """Return whether the claim is a phase function that everybody uses, about an axis."""
+    laws = henyey_greenstein, schlick
+    return _kappa(setting, axis) is not None or any(_own(setting, axis, f) is not None for f in laws)
 
 
 def _lobe(setting: Setting) -> bool:

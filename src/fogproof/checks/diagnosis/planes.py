@@ -52,8 +52,9 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
 
 
 def within(setting: Setting, normal: np.ndarray) -> bool:
-    """Return whether all samples are directions to a piece of a plane with such a normal, which nowhere grazes it."""
-    return bool(np.all(setting.contrast.x @ normal > _GRAZING))
+    """Return whether samples and claim are directions to a piece of a plane with such a normal, which nowhere grazes it."""
+    n, cosine = len(setting.contrast.x), setting.contrast.points @ normal
+    return bool(np.all(cosine[:n] > _GRAZING) and not np.any(setting.values[n:][cosine[n:] <= _GRAZING] > 0))
 
 
 def _expected(setting: Setting) -> Iterator[np.ndarray]:
