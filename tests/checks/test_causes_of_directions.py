@@ -82,6 +82,7 @@ CASES = {  # sampler, pdf, domain, dimensions; the cause and words of what expla
         "azimuth over pi",
     ),
     "a lobe's own parameter": ((fisher(9)[0], fisher(7)[1], *SPHERE), "another parameter", "the pdf's is 7"),
+    "the sign of g": ((hg(-0.8)[0], hg(0.8)[1], *SPHERE), "sign convention", "the opposite direction"),
     "area for solid angle": (
         (window, lit(0), *SPHERE),
         "missing Jacobian",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
@@ -17,11 +18,25 @@ _MIRROR = np.array([1.0, 1.0, -1.0])
 _ALONG = 0.03  # from a coordinate axis: such a lobe is meant to be about it
 _UNIT_LENGTH = 0.3  # relative error of a direction that cells tell
 _OUTER, _STEPS = 512, 2000  # samples that may bound a cone, and steps towards its axis
+_FAMILY = math.log(20)  # how much likelier a law is off by its own parameter
 _LEAN = 0.03  # mean length of directions that have a direction
 
 
 def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
-    """Yield what may have happened to directions, the simplest first."""
+    """Yield what may have happened to directions, the simplest first.
+
+    Where the claim is a law that everybody uses, its own parameter is likelier off than anything else that takes one.
+    """
+    laws = list(lobes.hypotheses(setting))
+    known = any(law.null is not None for law in laws)
+    yield from _simple()
+    for each in (*_of_places(setting), *_powers(setting), *(() if known else lobes.powers(setting))):
+        yield replace(each, prior=-_FAMILY) if known and each.trials else each
+    yield from laws
+    yield from grids.of_directions(setting)
+
+
+def _simple() -> Iterator[Hypothesis]:
     yield Hypothesis("uniform law", "these samples are uniform", lambda s, _: _everywhere)
     yield Hypothesis(
         "sign convention", "these samples fit the pdf of the opposite direction", lambda s, _: lambda x: s.p(-x)
@@ -39,14 +54,14 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
             names = "".join("xyz"[i] for i in order)
             words = f"these samples fit the pdf with its axes (x, y, z) taken for ({', '.join(names)})"
             yield Hypothesis("swapped axes", words, of_points(partial(np.take, indices=order, axis=1)))
+
+
+def _of_places(setting: Setting) -> Iterator[Hypothesis]:
     yield from _sines(setting)
     yield from _about_the_mean(setting)
     yield from planes.hypotheses(setting)
     yield from _half_vectors(setting)
     yield from frames.hypotheses(setting)
-    yield from lobes.hypotheses(setting)
-    yield from _powers(setting)
-    yield from grids.of_directions(setting)
 
 
 def _sines(setting: Setting) -> Iterator[Hypothesis]:

@@ -15,7 +15,6 @@ _ALONG = 0.03  # from a coordinate axis: such a lobe is meant to be about it
 _CHANCE = 5.0  # standard errors of a mean direction
 _LINEAR = 1e-6  # share of the variance of a logarithm that a line leaves
 _CONSTANT = 0.02  # deviation of the logarithm of a ratio of two lobes that are one
-_FAMILY = math.log(20)  # a law of one parameter is likelier off by this than by anything else that has one
 _TOP, _EDGE = 0.9, 0.02  # share of a claim that lies below its top, and beyond its skirts
 _SKIRTS = 0.1  # of the greatest density of a lobe
 _TOGETHER = 0.5  # mean length of the directions at the top of a lobe
@@ -43,22 +42,27 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
     kappas = (0.5, 2.0, 8.0, 32.0, 128.0, 1000.0)
     kappa = _kappa(setting, axis)
     near = () if kappa is None else (0.9 * kappa, 1.1 * kappa)
-    laws = (
+    for law, f, trials, null in (
         ("Henyey-Greenstein with g", henyey_greenstein, g, _own(setting, axis, henyey_greenstein)),
         ("Schlick's phase function with k", schlick, g, _own(setting, axis, schlick)),
         ("a von Mises-Fisher lobe with kappa", _fisher, tuple(sorted({*kappas, *near})), kappa),
-    )
-    for law, f, trials, null in laws:
+    ):
         yield Hypothesis(
             "another law" if null is None else "another parameter",
             f"these samples fit {law} = {{value}}" + (own if null is None else f"; the pdf's is {null:.4g}"),
             about(f, null),
             trials,
             fitted=null is None,  # which law
-            prior=0.0 if null is None else _FAMILY,
             null=null,
         )
-    if all(null is None for *_, null in laws) and _lobe(setting):
+    yield Hypothesis(
+        "another law", "these samples fit Rayleigh's phase function", about(lambda mu, _: 1 + mu * mu, None)
+    )
+
+
+def powers(setting: Setting) -> Iterator[Hypothesis]:
+    """Yield that a lobe of any law is broader or narrower: a power of the cosine, or an exponential, stays one."""
+    if _lobe(setting):
         yield Hypothesis(
             "another parameter",
             "these samples fit the pdf raised to the power {value}, as of a broader or a narrower lobe",
@@ -66,9 +70,6 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
             (0.3, 0.6, 0.8, 0.95, 1.05, 1.25, 1.7, 3.0),
             null=1.0,
         )
-    yield Hypothesis(
-        "another law", "these samples fit Rayleigh's phase function", about(lambda mu, _: 1 + mu * mu, None)
-    )
 
 
 def _known(setting: Setting, axis: np.ndarray) -> bool:
