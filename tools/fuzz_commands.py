@@ -4,7 +4,7 @@ python tools/fuzz_commands.py                    30000 runs
 python tools/fuzz_commands.py --runs 1000 --seed 7
 
 Runs happen in this process, by the function that the console script calls; one in `--apart` is repeated as a process of its own
-and must end the same. Studies, scenes, cases, records and requests are broken by a few seeded changes, words and options exchanged.
+and must end the same. `fuzz_runs` makes them: files of every kind are broken by a few seeded changes, words and options exchanged.
 A fault of ours is: an exit code that does not belong to the command, a refusal without a sentence, a traceback, a character that
 moves a terminal, a warning, the code `internal`, more than ten seconds of the processor, or a gibibyte in all. It is printed, and
 the exit code is 1.
@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import argparse
 import io
-import json
+import os
 import random
 import re
 import resource
@@ -26,53 +26,17 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from fuzz_files import GIBIBYTE, SCENE, SECONDS, STUDY, broken_bytes, broken_table, made, text_of, watch
-from fuzz_oracle import broken_line
+from fuzz_files import GIBIBYTE, SECONDS, made, watch
+from fuzz_runs import MAKERS, SHARES, Run
 
-from fogproof.catalogue.own import own_cases
 from fogproof.cli import main as fogproof
 
-CASES = """
-import numpy as np, fogproof
-from fogproof.catalogue import EstimatorCase, SamplerCase, Twin
-class Exponential:
-    domain, dimensions = fogproof.HalfLine(0.0), 1
-    def __init__(self, sigma=1.0):
-        self.sigma = sigma
-    def sample(self, u):
-        return -np.log1p(-u[:, 0]) / self.sigma
-    def pdf(self, t):
-        return np.exp(-t)
-class Mean:
-    def draw(self, rng, n):
-        return rng.random(n)
-def cases():
-    return [
-        SamplerCase(name="right", make=Exponential, samples=20_000, twin=Twin("rate", lambda: Exponential(2.0))),
-        EstimatorCase(name="mean", make=Mean, reference=0.5, samples=10_000, weight=3),
-    ]
-"""
-STUDY_FILE = {**STUDY, "samples": [10], "replicates": 4}
-WORDS = [
-    "", "-", "--", "-h", "--json", "--list", "--seed", "-1", "0", "1e400", "nan", "fog/analog/haze", "fog/*", "[", "**", "nothing",
-    "../..", "/dev/null", "a\x1b[31m", "\u202eb", "x.py", "x.py::", "::", "--alpha", "--workers", "--report", "--against", "-o",
-    "--twins", "--time-limit", "--rigorous", "--max-values", "--timeout", "--format", "csv", "--executor", "dask://", "\udcff",
-]  # fmt: skip
-COMMANDS = ("verify", "list", "oracle", "golden", "plan", "study", "report", "gallery", "", "veriffy")
 MOVES_A_TERMINAL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
-
-
-class Run(NamedTuple):
-    """A call of the command line: its words, what stands on stdin, the exit codes that may come."""
-
-    words: list[str]
-    codes: tuple[int, ...] = (0, 2)
-    stdin: bytes = b""
 
 
 class Ended(NamedTuple):
@@ -82,82 +46,6 @@ class Ended(NamedTuple):
     out: bytes
     err: bytes
     seconds: float
-
-
-def toml(value: Any, top: bool = True) -> str:
-    """Return a table as TOML; what TOML has no word for, as it comes."""
-    if isinstance(value, dict):
-        rows = [f"{json.dumps(str(key))} = {toml(item, top=False)}" for key, item in value.items()]
-        return "\n".join(rows) if top else "{" + ", ".join(rows) + "}"
-    if isinstance(value, list):
-        return "[" + ", ".join(toml(item, top=False) for item in value) + "]"
-    return json.dumps(value).replace("Infinity", "inf").replace("NaN", "nan")
-
-
-def plan(rng: random.Random, folder: Path, record: dict[str, Any]) -> Run:
-    """Return a scene to be planned."""
-    file = folder / "scene.toml"
-    text = toml(broken_table(rng, SCENE)).encode()
-    file.write_bytes(broken_bytes(rng, text) if rng.random() < 0.3 else text)
-    return Run(["plan", str(file), *["--json"] * rng.randrange(2)])
-
-
-def study(rng: random.Random, folder: Path, record: dict[str, Any]) -> Run:
-    """Return a small study to be measured."""
-    file = folder / "study.toml"
-    text = toml(broken_table(rng, STUDY_FILE)).encode()
-    file.write_bytes(broken_bytes(rng, text) if rng.random() < 0.2 else text)
-    shutil.rmtree(folder / "study", ignore_errors=True)
-    words = ["study", str(file), "-o", str(folder / "study"), "--workers", "1", *["--json"] * rng.randrange(2)]
-    return Run(words, (0, 1, 2, 3, 130))
-
-
-def report(rng: random.Random, folder: Path, record: dict[str, Any]) -> Run:
-    """Return records of which one or both are broken."""
-    names = [folder / "new", folder / "old"]
-    for name in names:
-        name.mkdir(exist_ok=True)
-        whole = rng.random() < 0.3
-        (name / "results.json").write_bytes(json.dumps(record).encode() if whole else text_of(rng, record))
-    against = ["--against", str(names[1])] * rng.randrange(2)
-    return Run(["report", str(names[0]), *against], (0, 1, 2, 3) if against else (0, 2))
-
-
-def requests(rng: random.Random, folder: Path, record: dict[str, Any]) -> Run:
-    """Return broken requests, in a file or on stdin, for answers or for a table."""
-    content = b"\n".join(broken_line(rng) for _ in range(rng.randrange(1, 4)))
-    file = folder / "requests.jsonl"
-    file.write_bytes(content)
-    place = rng.choice(("-", str(file)))
-    if rng.random() < 0.3:
-        kind = rng.choice(("json", "csv", "c", "npz"))
-        return Run(["golden", "--requests", place, "--format", kind, "--timeout", "2"], stdin=content)
-    return Run(["oracle", place, "--timeout", "2"], stdin=content)
-
-
-def cases(rng: random.Random, folder: Path, record: dict[str, Any]) -> Run:
-    """Return a file of somebody's cases, to be listed."""
-    file = folder / "mine.py"
-    file.write_bytes(broken_bytes(rng, CASES.encode()))
-    own_cases.cache_clear()
-    return Run(
-        ["list", str(file) + rng.choice(("", "", "::right", "::", "::*", "::no")), *["--json"] * rng.randrange(2)]
-    )
-
-
-def words(rng: random.Random, folder: Path, record: dict[str, Any]) -> Run:
-    """Return any words; no run of the whole catalogue, which takes minutes by right."""
-    command = rng.choice(COMMANDS)
-    rest = [rng.choice(WORDS) for _ in range(rng.randrange(6))]
-    if command in ("verify", "gallery"):
-        rest = ["nothing", *rest] if command == "verify" else ["--nothing", *rest]
-    return Run([command, *rest], stdin=rng.randbytes(rng.randrange(9)))
-
-
-MAKERS: dict[str, Callable[[random.Random, Path, dict[str, Any]], Run]] = {
-    "plan": plan, "study": study, "report": report, "requests": requests, "cases": cases, "words": words,
-}  # fmt: skip
-SHARES = {"plan": 16, "study": 1, "report": 1, "requests": 6, "cases": 16, "words": 16}
 
 
 @contextmanager
@@ -235,6 +123,9 @@ def fuzz(runs: int, seed: int, folder: Path, record: dict[str, Any], every: int 
     before = {name: signal.signal(name, stop) for name in (signal.SIGPROF, signal.SIGALRM)}
     bytecode, sys.dont_write_bytecode = sys.dont_write_bytecode, True  # files change within a second
     path = list(sys.path)
+    here_before, deep = Path.cwd(), folder / "a" / "b" / "c"  # words may be paths, "../.." among them
+    deep.mkdir(parents=True)
+    os.chdir(deep)
     try:
         for number in range(runs):
             (kind,) = rng.choices(list(SHARES), list(SHARES.values()))
@@ -243,7 +134,8 @@ def fuzz(runs: int, seed: int, folder: Path, record: dict[str, Any], every: int 
             counts[f"{kind} {end.code}"] += 1
             fault = fault_of(run, end)
             if not fault and every and number % every == every - 1:
-                shutil.rmtree(folder / "study", ignore_errors=True)
+                for place in ("study", "compared", *(f"renders-{n}" for n in range(4))):
+                    shutil.rmtree(folder / place, ignore_errors=True)
                 again = apart(run)
                 counts["apart"] += 1
                 late = b'"code": "timeout"' in again.out  # a busy machine loads for longer than a small limit
@@ -258,6 +150,7 @@ def fuzz(runs: int, seed: int, folder: Path, record: dict[str, Any], every: int 
         for name, handler in before.items():
             signal.signal(name, handler)
         sys.dont_write_bytecode, sys.path[:] = bytecode, path
+        os.chdir(here_before)
     return counts, faults
 
 

@@ -121,7 +121,14 @@ def test_fuzzed_commands_end_well(tmp_path):
     counts, faults = fuzz(150, 1, tmp_path, jsonable(typical(2)))
     assert not faults
     assert sys.stdin is stdin
-    assert {kind for kind, _ in (name.split() for name in counts)} >= {"plan", "requests", "cases", "words"}
+    assert {kind for kind, _ in (name.split() for name in counts)} >= {
+        "plan",
+        "requests",
+        "cases",
+        "check",
+        "export",
+        "words",
+    }
     assert isinstance(sys.stdout, io.TextIOBase)
 
 

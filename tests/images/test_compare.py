@@ -282,6 +282,16 @@ def test_numbers_that_no_radiance_has_are_told_without_a_warning(compared, truth
     assert not recwarn.list
 
 
+@pytest.mark.parametrize("copies", [1, 2])
+@pytest.mark.parametrize("size", [0.0, 1e-220])
+def test_noise_beside_next_to_nothing_is_no_overflow(truth, rng, size, copies, recwarn):
+    dark = replace(truth, value=size * truth.value, error=0 * truth.value)
+    renders = np.stack([rng.random((48, 64, 1)) for _ in range(copies)])
+    picture = RenderedImage(renders, None, (1e-8, 1e-45), ("Y",), ())
+    compare_renders(picture, SCENE, reference=dark, explain=False)
+    assert not recwarn.list
+
+
 def test_pixels_that_share_random_numbers_are_recognised(compared, truth, rng):
     renders = [
         truth.value * (1 + 0.1 * rng.standard_normal()) * (1 + 0.01 * rng.standard_normal((48, 64))) for _ in range(24)

@@ -36,11 +36,11 @@ def dependence(renders: np.ndarray, found: Residuals) -> Dependence:
 
     Noise is taken relative to the brightness, so that no bright pixel stands for all.
     """
-    size = np.abs(found.reference) + 0.1 * float(np.mean(np.abs(found.reference))) + 1e-300
-    difference = found.difference / size
+    size = np.abs(found.reference) + (0.1 * float(np.mean(np.abs(found.reference))) or 1.0)
+    difference = _scaled(found.difference / size)
     if len(renders) > 1:
         pairs = renders[0 : len(renders) // 2 * 2 : 2] - renders[1::2]
-        noise = np.where(np.isfinite(pairs), pairs, 0.0) / size
+        noise = _scaled(np.where(np.isfinite(pairs), pairs, 0.0) / size)
         near = [_z(noise[:, :, 1:] * noise[:, :, :-1]), _z(noise[:, 1:] * noise[:, :-1])]
         square = np.sum(noise * noise, axis=(1, 2))
         total = np.sum(noise, axis=(1, 2)) ** 2 / np.where(square > 0, square, 1.0)
@@ -63,6 +63,12 @@ def dependence(renders: np.ndarray, found: Residuals) -> Dependence:
             "anticorrelated", z, "the noise of neighbours is opposed, as blue noise is: means are better than told"
         )
     return Dependence("independent", z)
+
+
+def _scaled(x: np.ndarray) -> np.ndarray:
+    """Return noise in units of its largest value: no product of two overflows, and nothing that is asked of it has a scale."""
+    largest = float(np.max(np.abs(x), initial=0.0))
+    return x / largest if 0 < largest < math.inf else x
 
 
 def _z(products: np.ndarray) -> float:

@@ -80,9 +80,9 @@ def _bounded(reference: np.ndarray) -> np.ndarray:
 
 
 def _inverse(reference: np.ndarray) -> np.ndarray:
-    """Return weights 1 / reference, no larger than at a tenth of the mean: what is nearly black tells little."""
+    """Return weights mean / reference, no larger than at a tenth of the mean: what is nearly black tells little."""
     mean = float(np.mean(np.abs(reference)))
-    return 1 / np.maximum(np.abs(reference), 0.1 * mean) if mean > 0 else np.ones(reference.shape)
+    return mean / np.maximum(np.abs(reference), 0.1 * mean) if mean > 0 else np.ones(reference.shape)
 
 
 def _contrasts(found: Residuals, channel: int, names: tuple[str, ...]) -> Iterator[Pool]:
@@ -90,6 +90,7 @@ def _contrasts(found: Residuals, channel: int, names: tuple[str, ...]) -> Iterat
     reference = found.reference[..., channel]
     if min(reference.shape) < 3 or not np.ptp(reference) > 0:
         return
+    reference = reference / np.max(np.abs(reference))  # the square of next to nothing would be nothing
     down, right = np.gradient(reference)
     bent = np.gradient(down, axis=0) + np.gradient(right, axis=1)
     mean = float(np.mean(reference))
