@@ -155,6 +155,5 @@ def _times(history: History | None) -> TimeChanges | None:
     if not told:
         return None
     names, times, changed = zip(*told, strict=True)
-    return TimeChanges(
-        names, *(tuple(getattr(time, end) for time in times) for end in ("value", "low", "high")), changed
-    )
+    value, low, high = (tuple(getattr(time, end) for time in times) for end in ("value", "low", "high"))
+    return TimeChanges(names, value, low, high, changed)
