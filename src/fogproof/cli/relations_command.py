@@ -84,7 +84,7 @@ def command(
     if integrators and not chosen.takes("integrator"):
         raise click.UsageError("--integrators needs {integrator} in the command")
     run = RelationRun(
-        chosen, ways, samples, renders, seed, tolerance, alpha, python, only, not no_oracle, seconds
+        chosen, ways, samples, renders, seed, tolerance, alpha, python, only, not no_oracle, seconds, force
     )  # fmt: skip
     read_image_scenes(scenes)  # what cannot be read is told before hours of rendering
     take(folder, ("index.html", "results.json"), force)

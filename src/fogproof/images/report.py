@@ -16,8 +16,17 @@ from fogproof.reports.charts.colours import PAPER
 from fogproof.reports.charts.p_values import PValueHistogram
 from fogproof.reports.charts.sheet import Sheet
 from fogproof.reports.charts.sheet_png import png
-from fogproof.reports.files import write_file
+from fogproof.reports.files import write_file, write_picture
 from fogproof.reports.pages.images import write_image_page
+
+WRITTEN = (
+    "index.html",
+    "results.json",
+    "maps.exr",
+    "maps.npy",
+    *(f"figures/{name}.png" for name in ("image", "reference", "z-map", "p-values")),
+)
+"""The files of a comparison."""
 
 WORST = 8
 """Tiles that are listed."""
@@ -66,7 +75,7 @@ def write_comparison(done: ImageComparison, folder: Path) -> Path:
         pictures["p-values"] = png(sheet)
         record["p_values"] = told
     for name, content in pictures.items():
-        write_file(folder / "figures" / f"{name}.png", content)
+        write_picture(folder / "figures" / f"{name}.png", content)
     names = done.picture.names
     layers = {f"z.{name}": found.z[..., c] for c, name in enumerate(names)}
     layers |= {f"ratio.{name}": found.ratio[..., c] for c, name in enumerate(names)}
