@@ -15,7 +15,7 @@ from fogproof.cli.terminal import say
 from fogproof.cli.values import FOLDER, PLACE, PROBABILITY, RELATIVE, SECONDS
 from fogproof.images.judging import ALPHA, TOLERANCE
 from fogproof.images.renders import WRITTEN, Wanted, render_scenes, write_page
-from fogproof.renderers.table import renderer_of
+from fogproof.renderers.table import renderer_of, require_command
 
 
 @click.command("render")
@@ -69,6 +69,7 @@ def command(
 
     wanted = Wanted(renderer_of(renderer), samples, seed, tolerance, alpha, python, seconds)
     read_image_scenes(scenes)  # what cannot be read is told before hours of rendering
+    require_command(wanted.renderer, python)
     names = scene_names(scenes)
     take(folder, ("index.html", "results.json"), force)
     for name in names:
