@@ -131,9 +131,11 @@ RIGHT = {
         for g in (0.0, 0.3, -0.5, 0.8, 0.9, -0.95, 0.99, 0.999, -0.999)
     },
     "Henyey-Greenstein, g = 0.99, tilted axis": lambda: _directions(HenyeyGreenstein(0.99), TILTED),
-    "free path with a surface": _path,
-    "two peaks of width 1e-4": _two_peaks,
+    **SUBJECTS,
 }
+
+OPEN = {"beta, both ends singular": "1.3 % of its samples round to 1, where its density is infinite"}
+"""Right samplers of which a whole verdict may stay inconclusive, and why."""
 
 
 def _reported(rng: np.random.Generator, n: int) -> Draws:

@@ -15,6 +15,7 @@ from fogproof.text import p_value, visible
 
 if TYPE_CHECKING:
     import jinja2
+    from markupsafe import Markup
 
     from fogproof.checks import Verdict
 
@@ -55,6 +56,7 @@ def _environment() -> jinja2.Environment:
         "cases": cases,
         "duration": duration,
         "units_kept": units_kept,
+        "breakable": breakable,
         "smallest_p": smallest_p,
     }
     return environment
@@ -89,6 +91,13 @@ def smallest_p(verdict: Verdict | None) -> str:
 def units_kept(text: str) -> str:
     """Return `text` with every unit of time and per cent kept on the line of its number."""
     return re.sub(r"(?<=\d) (?=%|(?:ns|µs|ms|s|min|h)\b)", "\N{NARROW NO-BREAK SPACE}", text)
+
+
+def breakable(name: str) -> Markup:
+    """Return a name that may go on in the next line after a slash or an underscore, and so breaks no word."""
+    from markupsafe import Markup, escape
+
+    return Markup(re.sub("([/_])(?=.)", r"\1<wbr>", str(escape(visible(name)))))
 
 
 def grouped(value: float) -> str:

@@ -4,7 +4,7 @@ The short form of `tools/calibrate.py`. Fresh seeds; a band is crossed with prob
 """
 
 import pytest
-from calibrate import estimator_tally, sampler_tally, whole_verdicts
+from calibrate import allowed, estimator_tally, sampler_tally, whole_verdicts
 from calibrate_subjects import RIGHT, SUBJECTS
 from calibrate_tally import LEVEL, kind_of, uniformity
 
@@ -39,7 +39,7 @@ def test_p_values_of_right_estimators():
 @pytest.mark.parametrize("name", RIGHT)
 def test_right_samplers_pass_whole(name):
     seed = fresh_seed() >> 2
-    assert whole_verdicts(name, 3, 100_000, seed) == {"not rejected": 3}, f"seed {seed}"
+    assert set(whole_verdicts(name, 1, 100_000, seed)) <= allowed(name), f"seed {seed}"
 
 
 def test_kinds_have_no_axis():

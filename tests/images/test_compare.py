@@ -357,7 +357,11 @@ def test_the_command_writes_a_verdict_a_page_and_maps(tmp_path, truth, rng):
         "p-values.png",
     }
     assert set(format_of("maps.exr").read(folder / "maps.exr")) == {"z.Y", "ratio.Y", "reference.Y"}
-    assert "<h2" in (folder / "index.html").read_text()
+    page = (folder / "index.html").read_text()
+    assert page.count("<img") == 3
+    assert page.index("<img") < page.index('<h2 id="cases">Verdict')  # the pictures are the first that is seen
+    assert '<h1 class="good">' in page
+    assert "A relative bias of the image above " in page
     prepare_folder(folder, ("index.html", "results.json", "maps.exr"))  # it is seen to be ours
     channels = format_of(out).read(out)
     format_of(out).write(out, {"Y": 1.1 * channels["Y"]})

@@ -103,7 +103,7 @@ def test_no_error_no_request_and_no_sideways_scrolling(browser, pages, name):
     assert [url for url in requests(browser) if not url.startswith("data:")] == [pages[name]]
 
 
-@pytest.mark.parametrize(("name", "figures"), [("typical", 15), ("study", 3), ("gallery", 2)])
+@pytest.mark.parametrize(("name", "figures"), [("typical", 14), ("study", 3), ("gallery", 2)])
 def test_figures_are_visible(browser, pages, name, figures):
     visit(browser, pages[name])
     open_all(browser)

@@ -7,7 +7,7 @@ from report_records import HOSTILE, Page, case, record, typical
 
 from fogproof.errors import InvalidInputError
 from fogproof.reports import write_comparison
-from fogproof.reports.pages.comparison import pair_cases
+from fogproof.reports.pages.comparison import exit_code, pair_cases
 from fogproof.reports.records.runs import parse_record
 from fogproof.text import visible
 
@@ -90,3 +90,30 @@ def test_what_was_certain_is_not_given_a_p_value_or_a_resolution(tmp_path):
         finding["p_value"] = None if finding["outcome"] == "rejected" else finding["p_value"]
     assert "→ certain" in Page(write_comparison(before, after, tmp_path)).words
     assert not list((tmp_path / "figures").glob("comparison-resolution*"))
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "code"),
+    [
+        ({"a": "passed"}, {"a": "passed"}, 0),
+        ({"a": "rejected"}, {"a": "rejected"}, 0),
+        ({"a": "rejected"}, {"a": "passed", "b": "passed"}, 0),
+        ({"a": "passed"}, {"a": "rejected"}, 1),
+        ({"a": "passed"}, {"b": "passed"}, 3),
+        ({"a": "passed", "b": "passed"}, {"b": "error"}, 1),
+    ],
+)
+def test_exit_code(before, after, code):
+    assert exit_code(parse_record(run(**before)), parse_record(run(**after))) == code
+
+
+def test_a_stopped_run_is_not_compared_with_0():
+    stopped = run(a="passed") | {"state": "interrupted", "asked": ["a", "b"]}
+    assert exit_code(parse_record(run(a="passed")), parse_record(stopped)) == 3
+
+
+@pytest.mark.parametrize(("kind", "shown"), [("sampler", True), ("estimator", False)])
+def test_resolutions_are_compared_where_they_mean_the_same(tmp_path, kind, shown):
+    before, after = (record([case("a", kind=kind, figures=False)]) for kind in ("sampler", kind))
+    write_comparison(before, after, tmp_path)
+    assert (tmp_path / "figures" / "comparison-resolution.svg").exists() == shown

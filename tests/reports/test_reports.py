@@ -276,3 +276,21 @@ def test_a_status_beside_another_verdict_is_refused():
     table["cases"][number]["status"] = "passed"
     with pytest.raises(InvalidInputError, match=rf"cases\.{number}\.status must be 'rejected', as its verdict is"):
         parse_record(table)
+
+
+def test_junit_fails_a_case_whose_twin_was_not_rejected(tmp_path):
+    seen = {"outcome": "not rejected", "checks": [], "p_value": 0.3, "samples": 20_000}
+    cases = [case("blind", twin_result=seen, figures=False), case("sharp", figures=False)]
+    suite = ElementTree.parse(write_junit(parse_record(record(cases)), tmp_path)).getroot()[0]
+    blind, sharp = suite.iter("testcase")
+    assert "broken twin (g with the wrong sign): not rejected" in blind.find("failure").text
+    assert len(sharp) == 0
+    assert suite.get("failures") == "1"
+
+
+def test_junit_lists_what_a_stopped_run_did_not_come_to(tmp_path):
+    stopped = record([case("done", figures=False)], asked=["done", "later"], state="interrupted")
+    suite = ElementTree.parse(write_junit(parse_record(stopped), tmp_path)).getroot()[0]
+    assert [test.get("name") for test in suite.iter("testcase")] == ["done", "later"]
+    assert suite.find("testcase[@name='later']/skipped").get("type") == "gone"
+    assert (suite.get("tests"), suite.get("skipped")) == ("2", "1")

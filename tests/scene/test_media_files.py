@@ -22,8 +22,9 @@ from fogproof.scene import (
     Scene,
     VaryingPhase,
     VoxelGrid,
+    media,
 )
-from fogproof.scene.files import read_scene
+from fogproof.scene.files import read_fields, read_scene
 
 RAY = Ray((0, 0, 0), (0, 0, 1), 2.0)
 LINEAR = 'kind = "linear", sigma_0 = 1, gradient = [0, 0, 1]'
@@ -201,3 +202,23 @@ def test_a_ray_made_of_a_ray_has_the_same_direction():
     assert np.abs(np.linalg.norm(single, axis=-1) - 1).max() < 1e-15
     for direction in (once, single):
         assert np.array_equal(Ray((0, 0, 0), direction).direction, direction)
+
+
+def test_each_channel_of_a_linear_medium_has_its_own_gradient():
+    medium = LinearMedium((1.0, 2.0), ((0, 0, 1), (3, 0, 0)), albedo=(0.5, 0.25))
+    for c, gradient in enumerate([(0, 0, 1), (3, 0, 0)]):
+        grey = medium.channel(c)
+        assert np.array_equal(grey.gradient, gradient)
+        assert (grey.sigma_0, grey.albedo) == ((1.0, 2.0)[c], (0.5, 0.25)[c])
+
+
+def test_minus_infinity_is_read_as_such():
+    medium = {"kind": "piecewise-constant", "boundaries": ["-inf", 0, "inf"], "sigma_t": [1, 2]}
+    read = read_fields({"medium": media.AnyMediumField}, {"medium": medium}, "request")["medium"]
+    assert read.boundaries.tolist() == [-np.inf, 0, np.inf]
+
+
+def test_every_class_of_the_room_has_a_kind():
+    classes = {getattr(media, name) for name in media.__all__} - {media.AnyMedium}
+    assert set(media.KINDS.values()) | set(media.FROM_PYTHON) == classes
+    assert all(media.KINDS[kind].__module__ == f"{media.__name__}.{kind.replace('-', '_')}" for kind in media.KINDS)

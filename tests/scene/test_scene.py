@@ -8,6 +8,7 @@ import pytest
 from fogproof import HenyeyGreenstein, InvalidValueError, Isotropic, Medium, PointLight, Ray, Scene
 from fogproof.errors import InvalidInputError
 from fogproof.scene.files import read_scene
+from fogproof.validate import as_float_array
 
 ORIGIN, FORWARD = (0, 0, 0), (0, 0, 1)
 
@@ -115,3 +116,9 @@ def test_a_direction_normalised_in_single_precision_is_taken():
     direction /= np.linalg.norm(direction)
     ray = Ray(ORIGIN, direction, 1.0)
     assert abs(np.linalg.norm(ray.direction) - 1) < 1e-15
+
+
+def test_no_number_of_a_scene_is_a_negative_zero():
+    """The sign of a zero would choose a branch of arctan2 or of a quotient."""
+    assert not np.signbit(as_float_array("x", [-0.0, 0.0])).any()
+    assert not np.signbit(Ray((-0.0, 0, 0), (-0.0, 0, 1)).origin).any()

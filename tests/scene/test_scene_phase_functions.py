@@ -116,3 +116,9 @@ WRONG = [
 def test_files_are_refused_with_the_place(table, message):
     with pytest.raises(FogproofError, match=message):
         read_fields({"phase": PhaseFunctionField}, {"phase": table}, "request")
+
+
+@pytest.mark.parametrize("off", [1e-8, -1e-8, 1e-4])
+def test_a_table_that_is_not_normalised_is_refused(off):
+    with pytest.raises(InvalidValueError, match=r"integrate to 1.*normalised"):
+        Tabulated((-1, 1), tuple([(1 + off) / (4 * np.pi)] * 2))

@@ -3,9 +3,9 @@
     python tools/mutants [--part checks] [--match WORD] [--sample 30 --seed 1] [--again] [--wide] [--jobs 2]
 
 First the tests that an error names, then those that import its module; a survivor meets the whole folder of tests with `--wide`.
-Results go line by line to runs/mutants.jsonl, and what is there is not run again, but for `--again`, which tries survivors once
-more. `--table` writes docs/mutants.md from them. With `--sample` the program fails if an error survives that is not known to be
-harmless.
+Results go line by line to tools/mutants/record.jsonl, which is kept with the sources; what is there is not run again, but for
+`--again`, which tries survivors once more. `--table` writes docs/mutants.md from them. With `--sample` the program fails if an
+error survives that is not known to be harmless.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from mutants.mutant import ROOT, Mutant, mutants
 from mutants.reach import folders, tests_of
 from mutants.table import write
 
-RESULTS = ROOT / "runs" / "mutants.jsonl"
+RESULTS = Path(__file__).parent / "record.jsonl"
 
 
 def results(path: Path) -> dict[str, dict]:
@@ -89,7 +89,6 @@ def main() -> int:
     for mutant in (stale := [m for m in chosen if m.stale]):
         print(f"stale     {mutant.file}: {mutant.what}: write it anew", flush=True)
     chosen = [m for m in chosen if m not in stale]
-    RESULTS.parent.mkdir(exist_ok=True)
     lock, survivors = Lock(), []
     copies: queue.Queue[Copy] = queue.Queue()
     with tempfile.TemporaryDirectory(prefix="fogproof-mutants-") as folder:
