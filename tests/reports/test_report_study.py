@@ -225,6 +225,10 @@ def test_the_answer_is_told_at_once(tmp_path):
     ):
         assert "".join(text.split()) in answers, text
     assert "Exactisbest." not in answers
+    html = (tmp_path / "index.html").read_text(encoding="utf-8")
+    assert html.index("<h4>") < html.index(
+        '<div class="beside">'
+    )  # on narrow screens the picture follows the name of its scene
 
 
 def test_what_to_raise_names_each_estimator_once_and_leads_to_it(tmp_path):
