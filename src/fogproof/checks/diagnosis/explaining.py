@@ -43,11 +43,7 @@ def explanation(subject: Subject, setting: Setting, base: Fit, samples: int, see
     best = found[0]
     gain, share = explained_by(many, best)
     needed = _FITS if best.hypothesis.cause == "another law" else _EXPLAINS
-    if (
-        gain < _STANDS_OUT
-        or share < needed
-        or gain < unexplained(many.contrast, many.p(many.contrast.points)) + _CLEARLY
-    ):
+    if gain < _STANDS_OUT or share < needed or gain < unexplained(many.contrast, many.values) + _CLEARLY:
         return None
     near = [each for each in found[1:] if each.cause != best.cause and each.score > best.score - _CLEARLY]
     told = f"{best.words} (this explains {share:.0%} of the misfit)"
@@ -62,7 +58,7 @@ def explanation(subject: Subject, setting: Setting, base: Fit, samples: int, see
 
 def explained_by(setting: Setting, found: Explained) -> tuple[float, float]:
     """Return the log-likelihood that a hypothesis gains over the claim, and which share that is of what could be gained."""
-    gain = found.score - setting.contrast.likelihood(setting.p(setting.contrast.points))
+    gain = found.score - setting.contrast.likelihood(setting.values)
     left = unexplained(setting.contrast, found.density(setting))
     return gain, gain / (gain + left) if gain > 0 else 0.0
 
@@ -75,11 +71,7 @@ def _candidates(
         # a small smooth misfit hides among many cells, and stands out against the hypothesis that it is
         many = setting if samples <= SIZES[-1] else setting_of(subject, min(_SMALL, samples), seed)
         found = nearest(setting, many, [*of_domain(setting), *holes.hypotheses(setting)]) if many else []
-        if (
-            many
-            and found
-            and found[0].fit.likelihood - many.contrast.likelihood(many.p(many.contrast.points)) > _STANDS_OUT
-        ):
+        if many and found and found[0].fit.likelihood - many.contrast.likelihood(many.values) > _STANDS_OUT:
             return many, found
     found = likeliest(setting, base, [*of_domain(setting), *holes.hypotheses(setting)])
     found = [each for each in found if each.score > found[0].score - _CLOSE]
@@ -100,7 +92,7 @@ def _candidates(
 def setting_of(subject: Subject, n: int, seed: int) -> Setting | None:
     """Return what hypotheses may look at, with about n samples; None if too few of them are points of the continuous part."""
     contrast = Contrast.of(subject, n, batch_generator(seed, "diagnosis", 0, n))
-    return None if contrast is None else Setting(subject.domain, contrast.law, claimed(subject), contrast)
+    return None if contrast is None else Setting.of(subject.domain, claimed(subject), contrast)
 
 
 def contrasted(subject: Subject, samples: int, seed: int) -> tuple[Setting, Fit] | None:
@@ -111,7 +103,7 @@ def contrasted(subject: Subject, samples: int, seed: int) -> tuple[Setting, Fit]
         setting = setting_of(subject, min(n, max(samples, least)), seed)
         if setting is None:
             return None
-        base = setting.contrast.fit(setting.p(setting.contrast.points))
+        base = setting.contrast.fit(setting.values)
         if base.left > PLAIN or n >= samples:
             break
     return None if setting is None else (setting, base)

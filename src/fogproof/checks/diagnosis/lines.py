@@ -176,7 +176,7 @@ def _raised(x: np.ndarray, power: float) -> np.ndarray:
 def _of_another_deviation(setting: Setting) -> Iterator[Hypothesis]:
     """Yield that the samples are spread otherwise about where the claim is."""
     contrast = setting.contrast
-    weight = setting.p(contrast.points)[len(contrast.x) :] / contrast.q[len(contrast.x) :]
+    weight = setting.values[len(contrast.x) :] / contrast.q[len(contrast.x) :]
     order = np.argsort(contrast.z)
     share = np.cumsum(weight[order])
     if not (np.isfinite(share[-1]) and share[-1] > 0):
