@@ -225,3 +225,15 @@ def test_the_answer_is_told_at_once(tmp_path):
     ):
         assert "".join(text.split()) in answers, text
     assert "Exactisbest." not in answers
+    html = (tmp_path / "index.html").read_text(encoding="utf-8")
+    assert html.index("<h4>") < html.index(
+        '<div class="beside">'
+    )  # on narrow screens the picture follows the name of its scene
+
+
+def test_what_to_raise_names_each_estimator_once_and_leads_to_it(tmp_path):
+    """Names in the advice are links; the list of them is not told again."""
+    page = Page(write_report(study(advice="Too few samples: haze / ratio. Raise `replicates` to 32."), tmp_path))
+    (told,) = re.findall(r"<li>[^\n]*Whether it is biased cannot be said yet\.[^\n]*", page.html)
+    (target,) = re.findall(r'<a href="#([^"]+)"><bdi>haze /<wbr> ratio</bdi></a>', told)
+    assert any(unquote(target) == it.get("id") for it in page.all("div"))

@@ -75,7 +75,14 @@ def command(
     take(folder, REPORT, force)
     with interruptible() as stop:
         record = run_study(
-            plan, folder, executor=executor, workers=workers, against=against, salvage=salvage, command=called
+            plan,
+            folder,
+            executor=executor,
+            workers=workers,
+            against=against,
+            salvage=salvage,
+            command=called,
+            tell=lambda words: say(f"fogproof: {words}", err=True),
         )
     if stop.code:
         if not (folder / "results.json").exists():

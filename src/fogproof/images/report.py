@@ -14,8 +14,18 @@ from fogproof.images.judging import ImageComparison
 from fogproof.images.maps import REACH, maps, picture_png, z_png
 from fogproof.reports.charts.p_values import FEWEST, PValueHistogram
 from fogproof.reports.charts.pictures import render
-from fogproof.reports.files import write_file
+from fogproof.reports.files import write_file, write_picture
 from fogproof.reports.pages.images import write_image_page
+
+WRITTEN = (
+    "index.html",
+    "results.json",
+    "maps.exr",
+    "maps.npy",
+    *(f"figures/{name}.png" for name in ("image", "reference", "z-map", "p-values")),
+    "figures/p-values.svg",
+)
+"""The files of a comparison."""
 
 WORST = 8
 """Tiles that are listed."""
@@ -63,7 +73,7 @@ def write_comparison(done: ImageComparison, folder: Path) -> Path:
         p_values.save(folder / "figures")
         record["p_values"] = p_values.words
     for name, content in pictures.items():
-        write_file(folder / "figures" / f"{name}.png", content)
+        write_picture(folder / "figures" / f"{name}.png", content)
     names = done.picture.names
     layers = {f"z.{name}": found.z[..., c] for c, name in enumerate(names)}
     layers |= {f"ratio.{name}": found.ratio[..., c] for c, name in enumerate(names)}
