@@ -5,17 +5,28 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
+from itertools import chain
 
 import numpy as np
 
-from fogproof.checks.diagnosis import directions, holes, lines, numbers, parts, regions, turns
+from fogproof.checks.diagnosis import directions, holes, lines, numbers, parts, regions, triangles, turns
 from fogproof.checks.diagnosis.contrast import Contrast, Fit, claimed
 from fogproof.checks.diagnosis.fitting import TIE, Explained, judged, likeliest, nearest, sharpened
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting
 from fogproof.checks.diagnosis.shape import unexplained
 from fogproof.checks.streams import batch_generator
 from fogproof.checks.subject import Subject
-from fogproof.domains import Discrete, HalfLine, Interval, Product, RealLine, Rotations, UnitHemisphere, UnitSphere
+from fogproof.domains import (
+    Discrete,
+    HalfLine,
+    Interval,
+    Product,
+    RealLine,
+    Rotations,
+    Triangle,
+    UnitHemisphere,
+    UnitSphere,
+)
 
 SIZES = (1 << 14, 1 << 16, 1 << 18)  # samples: as few as show the misfit plainly
 PLAIN = 1000.0  # chi-square that is plain
@@ -120,6 +131,8 @@ def of_domain(setting: Setting) -> Iterator[Hypothesis]:
             return numbers.hypotheses(setting)
         case Rotations():
             return turns.hypotheses(setting)
+        case Triangle() as triangle:
+            return chain(triangles.hypotheses(triangle), regions.hypotheses(setting))
         case Product() as product:
             return parts.hypotheses(setting, product, of_domain)
     if setting.domain.shape == (3,) and np.allclose(np.sum(setting.contrast.x[:99] ** 2, axis=1), 1):

@@ -76,7 +76,7 @@ def _readings(contrast: Contrast, domain: Domain) -> Iterator[tuple[str, Reading
         if isinstance(part, (UnitSphere, UnitHemisphere)):
             axis = _ring(contrast.x[:, first:last])
             if axis is not None:
-                to = ", ".join(f"{c:.4f}" for c in axis)
+                to = ", ".join(f"{c:.4f}" for c in np.round(axis, 4) + 0.0)  # no -0
                 yield f"a cosine to ({to})", partial(_cosine, slice(first, last), axis)
         first = last
 
