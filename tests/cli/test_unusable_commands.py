@@ -25,6 +25,14 @@ def test_a_command_that_cannot_be_run_is_bad_usage(tmp_path, monkeypatch, comman
     assert not Path("out").exists()
 
 
+def test_a_command_that_fails_to_start_is_an_error_of_its_scene(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("file").write_text("#!/nowhere/interpreter\n")
+    Path("file").chmod(0o755)
+    end = here(Run(["render", SUN, "--with", "./file {scene} {out}", "-o", "out"]))
+    assert (end.code, b"cannot run ./file" in end.out) == (3, True), end.out
+
+
 NAMED = """
 import numpy as np
 from fogproof.catalogue import EstimatorCase
