@@ -7,12 +7,18 @@ import hashlib
 import json
 import os
 import re
+import struct
+import zlib
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from fogproof.errors import InvalidInputError
 
-REPORT = ("index.html", "results.json", "results.csv", "junit.xml")
-"""What a report writes into its folder, besides figures."""
+FIGURES = ("figures/*.png", "figures/*.svg")
+"""Pictures beside a page: which ones, a run may show only when it is over."""
+
+REPORT = ("index.html", "results.json", "results.csv", "junit.xml", *FIGURES)
+"""What a report writes into its folder."""
 
 COMPARISON = ("comparison.html", "before.json", "after.json")
 """What a comparison of two runs adds."""
@@ -21,20 +27,24 @@ _HEAD = 65536
 _PAGES = {
     ".html": re.compile(rb" \xe2\x80\x93 fogproof [^<]*</title>"),
     ".md": re.compile(rb"\nWritten by `fogproof [a-z]+"),
+    ".png": re.compile(rb"tEXtSoftware\0fogproof"),
+    ".svg": re.compile(rb"<!-- fogproof -->"),
 }
+_PLAIN = "scene.json"
+"""The end of names of records without a mark: renderers read them."""
 
 
 def prepare_folder(folder: Path, names: tuple[str, ...] = REPORT, force: bool | None = None) -> None:
     """Make `folder` and see that it can be written, and that no file of somebody else's is replaced.
 
-    A page is ours if it says so, a record if its `schema` (`format`) is one of ours. Of what bears no mark, such as a table,
-    the records beside it decide. Better to learn all that before a run than after it.
+    A page or picture is ours if it says so, a record if its `schema` (`format`) is one of ours. Of what bears no mark, such as a
+    table, the records beside it decide. Better to learn all that before a run than after it. What fails leaves no folder behind.
 
-    names  of the files that will be written there
+    names  of the files that will be written there; a pattern stands for all that are there
     force  replace whatever is there; None where nobody can ask for that
     """
-    records = [folder / name for name in names if name.endswith(".json")]
-    for path in [] if force else [folder / name for name in names]:
+    records = [folder / name for name in names if name.endswith(".json") and not name.endswith(_PLAIN)]
+    for path in [] if force else _written(folder, names):
         marked = path.suffix in _PAGES or path in records
         if os.path.lexists(path) and not (_is_ours(path) if marked else any(map(_is_ours, records))):
             fix = "choose another folder" + ("" if force is None else ", or add --force to replace it")
@@ -42,6 +52,58 @@ def prepare_folder(folder: Path, names: tuple[str, ...] = REPORT, force: bool | 
     probe = folder / f".probe.{os.getpid()}"
     write_file(probe, b"")
     probe.unlink(missing_ok=True)
+
+
+def _written(folder: Path, names: Iterable[str]) -> Iterator[Path]:
+    """Yield the files of these names, of patterns those that are there."""
+    for name in names:
+        if "*" in name:
+            yield from sorted(folder.glob(name))
+        else:
+            yield folder / name
+
+
+@contextlib.contextmanager
+def locked(folder: Path) -> Iterator[None]:
+    """Keep a folder that is there from other runs of fogproof.
+
+    The lock is the folder's own: no file is left, and a process that is killed holds it no more. Systems of files without locks
+    have none.
+    """
+    try:
+        import fcntl
+    except ImportError:  # Windows
+        yield
+        return
+    try:
+        opened = os.open(folder, os.O_RDONLY)
+    except OSError:
+        yield
+        return
+    try:
+        with contextlib.suppress(OSError):
+            try:
+                fcntl.flock(opened, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                what = f"another run of fogproof writes into {folder}; wait for its end, or choose another folder"
+                raise InvalidInputError(what, str(folder)) from None
+        yield
+    finally:
+        os.close(opened)
+
+
+def absent(folder: Path) -> list[Path]:
+    """Return which folders of a path are not there yet, the innermost first."""
+    with contextlib.suppress(OSError, ValueError):
+        return [place for place in (folder, *folder.parents) if not os.path.lexists(place)]
+    return []
+
+
+def remove_empty(folders: Iterable[Path]) -> None:
+    """Remove folders that nothing was written into, the innermost first."""
+    for folder in folders:
+        with contextlib.suppress(OSError, ValueError):
+            folder.rmdir()
 
 
 def _is_ours(path: Path) -> bool:
@@ -87,6 +149,7 @@ def write_file(path: Path, content: str | bytes) -> Path:
     """Put `content` at `path` whole or not at all, making folders on the way; a fault is an `InvalidInputError`."""
     data = content if isinstance(content, bytes) else content.encode("utf-8")
     beside = path.with_name(f".{_short(path.name)}.{os.getpid()}")
+    missing = absent(path.parent)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         try:
@@ -95,11 +158,22 @@ def write_file(path: Path, content: str | bytes) -> Path:
         finally:
             beside.unlink(missing_ok=True)
     except (OSError, ValueError) as error:
+        remove_empty(missing)
         reason = _no_folder(path.parent) or getattr(error, "strerror", None) or error
         raise InvalidInputError(
             f"cannot write {path}: {reason}; choose a folder that can be written", str(path)
         ) from None
     return path
+
+
+def write_picture(path: Path, content: str | bytes) -> Path:
+    """Write a PNG (bytes) or an SVG (text) with the mark by which it is known as ours."""
+    if isinstance(content, str):
+        return write_file(path, content.replace("<svg", "<!-- fogproof -->\n<svg", 1))
+    chunk = b"tEXtSoftware\0fogproof"
+    packed = struct.pack(">I", len(chunk) - 4) + chunk + struct.pack(">I", zlib.crc32(chunk))
+    after = 8 + 25  # the signature and the first chunk, IHDR
+    return write_file(path, content[:after] + packed + content[after:])
 
 
 _LONGEST = 200

@@ -16,6 +16,7 @@ import json
 import os
 import random
 import resource
+import secrets
 import shutil
 import signal
 import subprocess
@@ -52,6 +53,14 @@ medium = { kind = "random-grid", cells = [1, 1, 64], lower = [-1, -1, 0], upper 
 ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 2 }
 estimators = ["regular", "delta", "ratio", "march"]
 """
+MARK = "FOGPROOF_KILL_STUDY"
+"""What is in the environment of all processes of a run: a server of processes has a session of its own."""
+
+_marks: dict[int, bytes] = {}
+
+WHOM = {"main", "worker", "fork server"}
+"""Who is to be killed."""
+
 HELPERS = 10.0
 """Seconds that helpers may outlive the main process."""
 
@@ -67,10 +76,13 @@ def start(file: Path, folder: Path, executor: str = "threads", most: int | None 
             resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
 
     command = [sys.executable, "-m", "fogproof", "study", str(file), "-o", str(folder), "--executor", executor]
+    mark = secrets.token_hex(16)
     with open(complaints(folder), "wb") as said:
-        return subprocess.Popen(
-            command, stdout=subprocess.DEVNULL, stderr=said, start_new_session=True, preexec_fn=limited
+        process = subprocess.Popen(
+            command, stdout=subprocess.DEVNULL, stderr=said, preexec_fn=limited, env={**os.environ, MARK: mark}
         )
+    _marks[process.pid] = f"{MARK}={mark}".encode()
+    return process
 
 
 def complaints(folder: Path) -> Path:
@@ -79,16 +91,16 @@ def complaints(folder: Path) -> Path:
     return above / f"{folder.name}.err"
 
 
-def members(session: int) -> dict[int, str]:
-    """Return the processes of a session that still run, with their commands."""
+def members(process: subprocess.Popen[bytes]) -> dict[int, str]:
+    """Return the processes of a run that are still there, with their commands: whatever their session, they bear its mark."""
     found = {}
     for entry in Path("/proc").iterdir():
         try:
-            if entry.name.isdigit() and os.getsid(int(entry.name)) == session:
+            if entry.name.isdigit() and _marks[process.pid] in (entry / "environ").read_bytes().split(b"\0"):
                 state = (entry / "stat").read_text().rpartition(")")[2].split()[0]
                 if state != "Z":
                     found[int(entry.name)] = (entry / "cmdline").read_text().replace("\0", " ")
-        except OSError:  # it has just ended
+        except OSError:  # it has just ended, or is somebody else's
             continue
     return found
 
@@ -96,7 +108,7 @@ def members(session: int) -> dict[int, str]:
 def helper(process: subprocess.Popen[bytes], rng: random.Random) -> tuple[str, int] | None:
     """Return a helper of a run with processes, and what it is: a worker, or the server that forks them."""
     parents = {}
-    for pid in members(process.pid):
+    for pid in members(process):
         try:
             parents[pid] = int((Path("/proc") / str(pid) / "stat").read_text().rpartition(")")[2].split()[1])
         except OSError:
@@ -150,10 +162,15 @@ def kill(file: Path, folder: Path, executor: str, whom: str, seconds: float, rng
     demand(whom == "main" or code in (0, 2, 3), f"exit code {code}: {said}")
     demand("Traceback" not in said, said)
     ended = time.monotonic()
-    while left := members(process.pid):
+    while left := members(process):
         demand(time.monotonic() < ended + HELPERS, f"left after {HELPERS} s: {left}")
         time.sleep(0.1)
     return victim[0] if victim else None
+
+
+def whom_of(done: Counter[str]) -> set[str]:
+    """Return which kinds of processes were killed."""
+    return {name.partition(" of ")[0] for name in done}
 
 
 def kills(file: Path, parent: Path, wanted: int, rng: random.Random) -> None:
@@ -184,6 +201,7 @@ def kills(file: Path, parent: Path, wanted: int, rng: random.Random) -> None:
             demand(digest(folder) == whole, "the statistics differ")
             folder, kept = parent / f"killed-{runs}", set()
     demand(start(file, folder).wait() in (0, 3) and digest(folder) == whole, "the statistics differ")
+    demand(whom_of(done) >= WHOM or wanted < 12, f"not all kinds of processes were killed: {dict(done)}")
     print(f"{wanted} kills ({dict(done)}), {mid} with a part of the batches stored; the same statistics, nothing left")
 
 

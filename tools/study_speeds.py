@@ -4,7 +4,7 @@
 
 The second of a pair is drawn while the machine does something else as well: nothing, what is interpreted, what moves memory about.
 Of equal code no change may be said. Then one estimator of one takes half as long again, which must be said. Printed are the largest
-change of equal code, and how often each was said; `ASIDE` of `study/speed_change.py` comes from here.
+change of equal code, and how often each was said; `ASIDE` and `SHARE` of `study/speed_change.py` are held to it.
 """
 
 from __future__ import annotations
@@ -53,6 +53,16 @@ class Arrays(Base):
 class Loop(Base):
     def work(self, rng, n):
         return np.array([1.0 if -math.log(1 - u) > 1.0 else 0.0 for u in rng.random(n).tolist()])
+
+class Tables(Base):
+    table = np.linspace(0.0, 1.0, 1 << 22)  # 32 MB, looked up far apart
+    def work(self, rng, n):
+        return (self.table[rng.integers(0, 1 << 22, n)] < math.exp(-1.0)).astype(float)
+
+class Objects(Base):
+    def work(self, rng, n):
+        events = [{"u": u, "hit": u < math.exp(-1.0)} for u in rng.random(n).tolist()]
+        return np.array([float(event["hit"]) for event in events])
 """
 STUDY = """
 samples = [64, 1024, 16384]
@@ -64,7 +74,7 @@ medium = {{ sigma_a = 0.05, sigma_s = 0.05 }}
 ray = {{ origin = [0, 0, 0], direction = [0, 0, 1], length = 10 }}
 estimators = ["{name}"]
 """
-NAMES = ("own:Arrays", "own:Loop", "own:Arrays", "own:Loop", "ratio", "delta", "own:Loop")
+NAMES = ("own:Arrays", "own:Loop", "own:Tables", "own:Objects", "ratio", "delta", "own:Loop")
 AGAIN = "import sys; sys.path.insert(0, 'tools'); import study_speeds; study_speeds.draw(*sys.argv[1:])"
 
 

@@ -10,11 +10,14 @@ import numpy as np
 from fogproof.reports.charts.axes import DASHED, Axes
 from fogproof.reports.charts.colours import EXPECTED, GRID, INK, OBSERVED
 from fogproof.reports.charts.legend import Key, legend
+from fogproof.reports.charts.names import SIZE
 from fogproof.reports.charts.scale import spanning
 from fogproof.reports.charts.sheet import Sheet, Words
+from fogproof.reports.charts.sheet_png import text_width
 from fogproof.reports.text import label
 
 _NAMED = 3
+_Box = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True)
@@ -28,8 +31,8 @@ class BeforeAfter:
 
     HOW: ClassVar[str] = (
         "Each mark is a case: across, what it was in the older run; up, what it is now. On the dashed line nothing "
-        "changed; above it the number grew. Marks outside the grey band changed by more than a factor of two and are "
-        "named."
+        "changed; above it the number grew. Marks outside the grey band changed by more than a factor of two; the furthest "
+        "are named where there is room."
     )
 
     def draw(self, sheet: Sheet) -> str:
@@ -46,16 +49,23 @@ class BeforeAfter:
         axes.line(ends, ends, EXPECTED, DASHED)
         axes.points(before, after, OBSERVED)
         far = np.argsort(-np.abs(np.log(ratio)), kind="stable")[:_NAMED]
-        named: list[tuple[float, float]] = []
+        marks = axes.at(before, after)
+        taken: list[_Box] = [(x - 4, y - 4, x + 4, y + 4) for x, y in marks]
         for index in far[np.abs(np.log2(ratio[far])) > 1]:
-            (x, y), right = axes.at(before[[index]], after[[index]])[0], scale(before[[index]])[0] < 0.5
-            if any(abs(y - other) < 14 and abs(x - beside) < 200 for beside, other in named):
-                continue  # one name over another is none
-            named.append((x, y))
-            name = label(self.names[index], 24)
-            sheet.shapes.append(Words(x + (7 if right else -7), y - 6, name, INK, "start" if right else "end", size=12))
+            (x, y), name = marks[index], label(self.names[index], 24)
+            width = text_width(name, SIZE)
+            for left, base in [(left, y + down) for left in (x + 7, x - 7 - width) for down in (4.0, -6.0, 14.0)]:
+                box = (left, base - SIZE, left + width, base + 3)
+                if axes.box[0] <= left and left + width <= sheet.width and not any(_overlap(box, one) for one in taken):
+                    taken.append(box)
+                    sheet.shapes.append(Words(left, base, name, INK, size=SIZE))
+                    break  # where there is no room a name is left out: one over a mark or another name is none
         middle = float(np.exp(np.median(np.log(ratio))))
         return (
             f"{self.what} of {ratio.size} cases after against before: the middle ratio is {middle:.2f}, the smallest "
             f"{ratio.min():.2g}, the largest {ratio.max():.2g}."
         )
+
+
+def _overlap(a: _Box, b: _Box) -> bool:
+    return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]

@@ -15,6 +15,7 @@ from fogproof.reports.charts.scale import Scale
 from fogproof.reports.charts.sheet import Sheet
 from fogproof.reports.text import label
 
+ENDLESS = 1e300  # edges beyond are those of numbers, not of a domain
 FAR = 10  # an outer bin so many times as wide as all inner ones together is drawn as if it were open
 WIDEST = 100  # where the range is so many times as wide as all bins would be, were they like the median one, no axis shows them
 
@@ -76,9 +77,16 @@ class Bins:
         worst = int(np.argmax(np.abs(observed - expected)))
         return (
             f"Observed shares of {expected.size} bins of {label(self.label)} against their probabilities; the largest "
-            f"difference is {observed[worst] - expected[worst]:+.2g} in the bin from {self.edges[worst]:.4g} to "
-            f"{self.edges[worst + 1]:.4g} (expected {expected[worst]:.3g})."
+            f"difference is {observed[worst] - expected[worst]:+.2g} in the bin {_within(*self.edges[worst : worst + 2])} "
+            f"(expected {expected[worst]:.3g})."
         )
+
+
+def _within(low: float, high: float) -> str:
+    """Return in words where a bin lies."""
+    if abs(low) > ENDLESS or abs(high) > ENDLESS:
+        return f"beyond {high if abs(low) > ENDLESS else low:.4g}"
+    return f"from {low:.4g} to {high:.4g}"
 
 
 def closed(edges: np.ndarray) -> tuple[np.ndarray, bool]:

@@ -21,7 +21,7 @@ _LOWEST = 3e-6
 """Relative errors below are nobody's question, and would flatten all others; their curves leave the picture."""
 _LETTERS = 28
 """In a line of a curve's name."""
-_SIDE = 240.0
+_SIDE = 258.0
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ class Convergence:
     @property
     def size(self) -> tuple[float, float]:
         """Width and height [px]: room for the names beside the curves."""
-        return 680.0, max(380.0, 70.0 + height_of([curve.name for curve in self.curves], _LETTERS))
+        return 700.0, max(380.0, 70.0 + height_of([curve.name for curve in self.curves], _LETTERS))
 
     def draw(self, sheet: Sheet) -> str:
         """Draw each curve with its confidence band and name, the oracle's prediction dotted, and a line of the expected slope."""
@@ -113,9 +113,9 @@ def _end_of(curve: ErrorCurve, axes: Axes, up: Scale) -> EndLabel:
         k = int(below[0])
         share = 0.0 if k == 0 else (y[k - 1] - floor) / (y[k - 1] - y[k])
         at = (x[0], floor) if k == 0 else (x[k - 1] + share * (x[k] - x[k - 1]), floor)
-    colour, _ = _look(curve.look)
+    colour, marker = _look(curve.look)
     (end,) = axes.at([float(np.exp(at[0]))], [float(np.exp(at[1]))])
-    return EndLabel(label(curve.name, 90), colour, end, DASHED if curve.dashed else None)
+    return EndLabel(label(curve.name, 90), colour, end, marker, DASHED if curve.dashed else None)
 
 
 def _look(number: int) -> tuple[str, Any]:

@@ -1,4 +1,4 @@
-"""Names at the ends of curves, instead of a legend: spread so that none covers another, each tied to its curve."""
+"""Names at the ends of curves, instead of a legend: spread so that none covers another, each beside the look of its curve."""
 
 from __future__ import annotations
 
@@ -6,20 +6,24 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from textwrap import wrap
 
+from fogproof.reports.charts.axes import Marker, mark
 from fogproof.reports.charts.colours import INK
 from fogproof.reports.charts.sheet import FONT_SIZE, Outline, Sheet, Words
 
 _LINE = 1.15 * FONT_SIZE
 _GAP = 0.3 * FONT_SIZE
+_BESIDE = 44.0
+"""Between the axes and the names [px]: the leader, and a piece of the curve with its mark."""
 
 
 @dataclass(frozen=True)
 class EndLabel:
-    """A name and where its curve ends [px]."""
+    """A name, where its curve ends [px], and what that looks like."""
 
     text: str
     colour: str
     end: tuple[float, float]
+    marker: Marker
     dash: tuple[float, float] | None = None
 
 
@@ -46,7 +50,11 @@ def write_labels(sheet: Sheet, labels: Sequence[EndLabel], right: float, top: fl
         tops[k] = min(tops[k], lowest - heights[k])
         lowest = tops[k]
     for label, start, height in zip(order, tops, heights, strict=True):
-        middle, x = start + (height - _GAP) / 2, right + 26
-        sheet.shapes.append(Outline([[label.end, (right + 8, middle), (x - 4, middle)]], label.colour, 1.2, label.dash))
+        middle, x = start + (height - _GAP) / 2, right + _BESIDE
+        sheet.shapes += [
+            Outline([[label.end, (right + 10, middle)]], label.colour, 1, opacity=0.45),  # fainter than any curve
+            Outline([[(right + 10, middle), (x - 6, middle)]], label.colour, 2, label.dash),
+            mark([((right + 4 + x) / 2, middle)], label.colour, label.marker),
+        ]
         for number, line in enumerate(lines_of(label.text, width)):
             sheet.shapes.append(Words(x, start + (number + 0.8) * _LINE, line, INK))

@@ -12,6 +12,7 @@ from fogproof.reports.charts.colours import EXPECTED, GRID, OBSERVED
 from fogproof.reports.charts.legend import Key, legend
 from fogproof.reports.charts.scale import Scale
 from fogproof.reports.charts.sheet import Sheet
+from fogproof.text import p_value
 
 
 @dataclass(frozen=True)
@@ -58,16 +59,21 @@ class PValues:
             axes.points(middle[where], np.maximum(p[where], floor), OBSERVED, marker, 3 if marker == "dot" else 5)
         return (
             f"{n} p-values that are uniform for right subjects, sorted, against their expectation; the smallest is "
-            f"{min(self.p):.2g}; {int(np.sum(~inside))} lie outside the range that holds each with probability 99.9%."
+            f"{p_value(min(self.p), 2)}; {int(np.sum(~inside))} lie outside the range that holds each with probability 99.9%."
         )
+
+
+FEWEST = 10
+"""Fewer p-values make no histogram."""
+_A_BIN = 4
+"""P-values that are expected in each bin, if they are enough."""
 
 
 @dataclass(frozen=True)
 class PValueHistogram:
-    """How many of the exact p-values fall into each twentieth of [0, 1]."""
+    """How many of the exact p-values fall into each part of [0, 1]: a twentieth, or more where they are few."""
 
     p: tuple[float, ...]
-    bins: int = 20
 
     HOW: ClassVar[str] = (
         "If every subject is right, all p-values are equally likely and the bars are level, but for chance: the grey "
@@ -79,12 +85,14 @@ class PValueHistogram:
         """Draw the counts, and the range that holds each with probability 99.9% if all subjects are right: binomial."""
         from scipy.special import bdtrik
 
-        n, share = len(self.p), 1 / self.bins
-        counts, edges = np.histogram(self.p, self.bins, (0.0, 1.0))
+        n = len(self.p)
+        bins = next((bins for bins in (20, 10) if n >= _A_BIN * bins), 5)
+        share = 1 / bins
+        counts, edges = np.histogram(self.p, bins, (0.0, 1.0))
         low, high = (float(np.ceil(max(bdtrik(q, n, share), 0.0))) for q in (0.0005, 0.9995))
         keys = [Key("observed", OBSERVED, "area"), Key("expected", EXPECTED, dash=DASHED)]
         top = legend(sheet, [*keys, Key("99.9% of right subjects", GRID, "area")], 20, 0, sheet.width - 20) + 4
-        y = Scale(0, 1.08 * max(high, float(counts.max()), 1.0))
+        y = Scale(0, 1.08 * max(high, float(counts.max()), 1.0), whole=True)
         axes = Axes(sheet, (64, top, sheet.width - 80, sheet.height - top - 50), Scale(0, 1), y)
         axes.frame("p-value", "findings")
         axes.band([0, 1], [low, low], [high, high], GRID, 1)
@@ -93,6 +101,6 @@ class PValueHistogram:
         outside = int(np.sum((counts < low) | (counts > high)))
         lie = "1 bin lies" if outside == 1 else f"{outside} bins lie"
         return (
-            f"Histogram of {n} p-values that are uniform for right subjects: {n * share:.1f} are expected in each of {self.bins} "
+            f"Histogram of {n} p-values that are uniform for right subjects: {n * share:.1f} are expected in each of {bins} "
             f"bins, {counts.min()} to {counts.max()} are there; {lie} outside the range of 99.9%."
         )

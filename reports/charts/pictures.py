@@ -12,7 +12,7 @@ import numpy as np
 from fogproof.reports.charts.colours import ON_PAGE, PAPER
 from fogproof.reports.charts.sheet import Sheet
 from fogproof.reports.charts.sheet_png import png
-from fogproof.reports.files import write_file
+from fogproof.reports.files import write_picture
 
 
 class PictureChart(Protocol):
@@ -37,8 +37,8 @@ class Picture:
 
     def save(self, folder: Path) -> None:
         """Write `folder/STEM.svg` and `folder/STEM.png`."""
-        write_file(folder / f"{self.stem}.png", self.png)
-        write_file(folder / f"{self.stem}.svg", self.svg)
+        write_picture(folder / f"{self.stem}.png", self.png)
+        write_picture(folder / f"{self.stem}.svg", self.svg)
 
     @property
     def on_page(self) -> str:

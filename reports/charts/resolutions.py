@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import takewhile
 from typing import ClassVar
 
 import numpy as np
@@ -12,13 +11,13 @@ import numpy as np
 from fogproof.reports.charts.axes import Axes, Marker
 from fogproof.reports.charts.colours import EXPECTED, OBSERVED, THIRD
 from fogproof.reports.charts.legend import Key, legend
+from fogproof.reports.charts.names import SIZE, cut, shared_folder
 from fogproof.reports.charts.scale import Scale, spanning
 from fogproof.reports.charts.sheet import Sheet
 from fogproof.reports.charts.sheet_png import text_width
 from fogproof.reports.text import label
 
 _NAMED = 48  # passes that have a line each
-_NAME = 12.0  # size of a name [px]
 _LONGEST = 0.55  # of the width, for names
 
 
@@ -63,14 +62,14 @@ class Resolutions:
         counts = [sum(its == kind for _, its, _ in rows) for kind in kinds]
         keys = [Key(label(kind, 80), *chosen[kind]) for kind in kinds]
         top = (legend(sheet, keys, 8, 0, sheet.width - 8) if named else 4.0) + 4
-        folder = _shared([name for name, _, _ in rows]) if named else ""
+        folder = shared_folder([name for name, _, _ in rows]) if named else ""
         lines = (
             [name.removeprefix(folder) for name, _, _ in rows]
             if named
             else [f"{k} ({n})" for k, n in zip(kinds, counts, strict=True)]
         )
-        lines = [_cut(line, _LONGEST * sheet.width) for line in lines]
-        left = 16 + max(text_width(line, _NAME) for line in lines)
+        lines = [cut(line, _LONGEST * sheet.width) for line in lines]
+        left = 16 + max(text_width(line, SIZE) for line in lines)
         y = Scale(len(rows), -1) if named else Scale(len(kinds) - 0.5, -0.5)
         across, beyond = _within(values)
         rows = [(name, kind, min(max(value, across.low), across.high)) for name, kind, value in rows]
@@ -88,21 +87,6 @@ class Resolutions:
             f"relative to what they are errors of.{f' All names begin with {folder}' if folder else ''}"
             f"{f' {beyond} lie beyond the axis and are drawn at its end.' if beyond else ''}"
         )
-
-
-def _shared(names: Sequence[str]) -> str:
-    """Return the folder that all names lie in, with its slash; "" if there is none, or one name alone."""
-    folders = zip(*(name.split("/")[:-1] for name in names), strict=False)
-    shared = takewhile(lambda parts: len(set(parts)) == 1, folders)
-    return "".join(f"{parts[0]}/" for parts in shared) if len(names) > 1 else ""
-
-
-def _cut(text: str, width: float) -> str:
-    """Return a text on one line, its middle left out if it is wider than `width` px."""
-    limit = max(len(text), 4)
-    while limit > 4 and text_width(label(text, limit), _NAME) > width:
-        limit -= 1
-    return label(text, limit)
 
 
 def _within(values: Sequence[float]) -> tuple[Scale, int]:

@@ -17,11 +17,12 @@ LEAST, MOST = 1e-290, 1e290
 
 @dataclass(frozen=True)
 class Scale:
-    """Data from `low` to `high`, which differ; logarithmic ones are positive."""
+    """Data from `low` to `high`, which differ; logarithmic ones are positive, `whole` ones counts, with ticks at whole numbers."""
 
     low: float
     high: float
     log: bool = False
+    whole: bool = False
 
     def __call__(self, values: Values) -> np.ndarray:
         """Return where values lie: 0 at low, 1 at high."""
@@ -40,7 +41,7 @@ class Scale:
             return []
         if not 0 < self.high - self.low < inf:  # a record changed by hand may hold anything
             return []
-        return _decades(self.low, self.high, most) if self.log else _steps(self.low, self.high, most)
+        return _decades(self.low, self.high, most) if self.log else _steps(self.low, self.high, most, self.whole)
 
 
 def spanning(values: Values, log: bool = False, margin: float = 0.05) -> Scale:
@@ -56,10 +57,11 @@ def spanning(values: Values, log: bool = False, margin: float = 0.05) -> Scale:
     return Scale(low - room, high + room)
 
 
-def _steps(low: float, high: float, most: int) -> list[tuple[float, str]]:
-    raw = (high - low) / most
+def _steps(low: float, high: float, most: int, whole: bool = False) -> list[tuple[float, str]]:
+    raw = max((high - low) / most, 1.0 if whole else 0.0)
     power = 10.0 ** floor(log10(raw))
-    step = next(factor * power for factor in (1, 2, 2.5, 5, 10) if factor * power >= raw * (1 - 1e-9))
+    factors = (1, 2, 5, 10) if whole else (1, 2, 2.5, 5, 10)
+    step = next(factor * power for factor in factors if factor * power >= raw * (1 - 1e-9))
     first, last = ceil(low / step - 1e-9), floor(high / step + 1e-9)
     if last - first > 2 * most:  # a span below the last digit of its numbers
         return []
@@ -71,7 +73,7 @@ def _steps(low: float, high: float, most: int) -> list[tuple[float, str]]:
 def _plain(value: float, digits: int) -> str:
     if value == 0:
         return "0"
-    text = f"{value:.{min(digits, 15)}g}"
+    text = f"{value:.{min(max(digits, 5 if 1 <= abs(value) < 1e5 else 1), 15)}g}"  # 50 and 100, not 10²
     mantissa, _, exponent = text.partition("e")
     return (f"{mantissa}·{_power(int(exponent))}" if exponent else text).replace("-", "−")
 

@@ -9,6 +9,7 @@ from typing import Any
 
 from fogproof.reports.charts.before_after import BeforeAfter
 from fogproof.reports.charts.pictures import Picture, render
+from fogproof.reports.charts.time_changes import TimeChanges
 from fogproof.reports.files import write_file
 from fogproof.reports.pages.templates import cases as some_cases
 from fogproof.reports.pages.templates import fill
@@ -65,7 +66,7 @@ def exit_code(before: RunRecord, after: RunRecord, history: History | None = Non
 def write_comparison_page(before: RunRecord, after: RunRecord, folder: Path, history: History | None = None) -> Path:
     """Write `folder/comparison.html` and its figures; return the page's path."""
     pairs = pair_cases(before, after)
-    figures = _figures(pairs)
+    figures = _figures(pairs, history)
     for picture in figures:
         picture.save(folder / "figures")
     counts = {change: sum(pair.change == change for pair in pairs) for change in CHANGES}
@@ -120,7 +121,9 @@ def _settings(before: RunRecord, after: RunRecord) -> list[tuple[str, Any, Any]]
     return sorted(rows, key=lambda row: row[1] == row[2])
 
 
-def _figures(pairs: list[Pair]) -> list[Picture]:
+def _figures(pairs: list[Pair], history: History | None) -> list[Picture]:
+    """Return what a run is compared by: how small an error is caught, and time; of a study's estimators that of one estimate."""
+
     def resolution(case: Case) -> float:
         found = case.verdict.resolution if case.verdict is not None and case.verdict.outcome != "rejected" else None
         return found.value if found else 0.0
@@ -131,10 +134,26 @@ def _figures(pairs: list[Pair]) -> list[Picture]:
     both = [(pair.name, pair.before, pair.after) for pair in pairs if pair.before and pair.after]
     seconds = [(name, a.seconds, b.seconds) for name, a, b in both if a.verdict is not None and b.verdict is not None]
     caught = [(name, resolution(a), resolution(b)) for name, a, b in both if kind(a) == kind(b)]
-    figures = []
-    for stem, what, rows in (("seconds", "Time [s]", seconds), ("resolution", "Smallest error caught", caught)):
+    told = _times(history)
+    figures = [render(told, "comparison-times", told.size)] if told else []
+    rest = (("resolution", "Smallest error caught", caught), ("seconds", "Time [s]", [] if told else seconds))
+    for stem, what, rows in rest:
         usable = [row for row in rows if 0 < row[1] < inf and 0 < row[2] < inf]
         if usable:
             drawing = BeforeAfter(what, *(tuple(column) for column in zip(*usable, strict=True)))
             figures.append(render(drawing, f"comparison-{stem}", (560, 440)))
     return figures
+
+
+def _times(history: History | None) -> TimeChanges | None:
+    """Return how the times of a study's estimators changed, None where none is in both runs."""
+    told = [
+        (f"{change.scene} / {change.estimator}", change.time, bool({"slower", "faster"} & set(change.became)))
+        for change in (history.changes if history else ())
+        if change.time is not None and 0 < change.time.value < inf
+    ]
+    if not told:
+        return None
+    names, times, changed = zip(*told, strict=True)
+    value, low, high = (tuple(getattr(time, end) for time in times) for end in ("value", "low", "high"))
+    return TimeChanges(names, value, low, high, changed)

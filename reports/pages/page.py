@@ -10,7 +10,7 @@ from typing import Any, get_args
 
 from fogproof.checks.verdict import Finding
 from fogproof.reports.charts.findings import parse_figure
-from fogproof.reports.charts.p_values import PValueHistogram, PValues
+from fogproof.reports.charts.p_values import FEWEST, PValueHistogram, PValues
 from fogproof.reports.charts.pictures import Picture, render
 from fogproof.reports.charts.resolutions import Resolutions
 from fogproof.reports.files import write_file
@@ -143,8 +143,9 @@ def _overview(run: RunRecord) -> Iterable[tuple[str, Any, tuple[float, float]]]:
     exact = tuple(
         f.p_value for v in right for f in v.findings if f.exact and f.p_value is not None and 0 <= f.p_value <= 1
     )
-    if exact:
+    if len(exact) >= FEWEST:
         yield "p-value-histogram", PValueHistogram(exact), (560, 340)
+    if exact:
         yield "p-values", PValues(exact), (560, 420)
     passes = tuple(
         (case.name, plain(case.verdict.resolution.kind), size)

@@ -41,6 +41,21 @@ class SceneShown:
         """The errors that times are told for."""
         return next((row.entry.speed.targets for row in self.rows if row.entry.speed and row.entry.speed.targets), ())
 
+    def label(self, name: str) -> str:
+        """Return the label of an estimator."""
+        return next((row.entry.label for row in self.rows if row.entry.name == name), name)
+
+    @property
+    def reached(self) -> bool:
+        """Whether anybody comes to any of the errors."""
+        return any(row.all for row in self.scene.answer.soonest)
+
+    @property
+    def biased(self) -> list[StudyEntry]:
+        """Those that are soonest to some error and are not unbiased, or not known to be."""
+        first = {row.all.name for row in self.scene.answer.soonest if row.all}
+        return [row.entry for row in self.rows if row.entry.name in first and row.entry.status != "passed"]
+
 
 def write_study_page(study: StudyRecord, folder: Path) -> Path:
     """Write `folder/index.html` and its figures; return the page's path."""

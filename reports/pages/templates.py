@@ -5,9 +5,11 @@ from __future__ import annotations
 import base64
 import hashlib
 import re
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from urllib.parse import quote
 
 from fogproof.reports.text import anchor, label
 from fogproof.text import duration as in_words
@@ -15,8 +17,10 @@ from fogproof.text import p_value, visible
 
 if TYPE_CHECKING:
     import jinja2
+    from markupsafe import Markup
 
     from fogproof.checks import Verdict
+    from fogproof.reports.records.runs import Case
 
 _STATUSES = {"surprise": "!", "rejected": "✗", "error": "⚠", "inconclusive": "?", "known": "⚑", "skipped": "–"}
 _CHANGES = {"worse": "✗", "mended": "✓", "changed": "≠", "new": "+", "gone": "–", "same": "="}
@@ -55,6 +59,8 @@ def _environment() -> jinja2.Environment:
         "cases": cases,
         "duration": duration,
         "units_kept": units_kept,
+        "breakable": breakable,
+        "linked": linked,
         "smallest_p": smallest_p,
     }
     return environment
@@ -89,6 +95,25 @@ def smallest_p(verdict: Verdict | None) -> str:
 def units_kept(text: str) -> str:
     """Return `text` with every unit of time and per cent kept on the line of its number."""
     return re.sub(r"(?<=\d) (?=%|(?:ns|µs|ms|s|min|h)\b)", "\N{NARROW NO-BREAK SPACE}", text)
+
+
+def breakable(name: str) -> Markup:
+    """Return a name that may go on in the next line after a slash or an underscore, and so breaks no word."""
+    from markupsafe import Markup, escape
+
+    return Markup(re.sub("([/_])(?=.)", r"\1<wbr>", str(escape(visible(name)))))
+
+
+def linked(text: str, cases: Sequence[Case]) -> Markup:
+    """Return a text in which the names of cases lead to their sections."""
+    from markupsafe import Markup
+
+    names = sorted({case.name for case in cases}, key=len, reverse=True)
+    parts = re.split(f"({'|'.join(map(re.escape, names))})", text) if names else [text]
+    link = Markup('<a href="#{}"><bdi>{}</bdi></a>')
+    return Markup("").join(
+        link.format(quote(anchor(part)), breakable(part)) if part in names else visible(part) for part in parts
+    )
 
 
 def grouped(value: float) -> str:

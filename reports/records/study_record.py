@@ -131,14 +131,39 @@ class StudyEntry:
 
 
 @dataclass(frozen=True)
+class SoonestRecord:
+    """Who comes to an error in the least time, who may be `beside` it, and who may be sooner and is `waiting` for more samples."""
+
+    name: str
+    how: str
+    seconds: float
+    beside: tuple[str, ...] = ()
+    waiting: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class ErrorReached:
+    """Who is soonest to a relative error, of `all` and of the `unbiased`; None where nobody comes."""
+
+    error: float
+    all: SoonestRecord | None = None
+    unbiased: SoonestRecord | None = None
+
+
+@dataclass(frozen=True)
 class Answer:
-    """Which estimator to take, in words; both names are of the soonest to the first target's error."""
+    """Which estimator to take, in words, one sentence a line; both names are of the soonest to the first target's error.
+
+    notes  the sentences that say more than `soonest`
+    """
 
     best: str | None
     best_unbiased: str | None
     text: str
     ranking: tuple[str, ...] = ()
     unranked: tuple[str, ...] = ()
+    soonest: tuple[ErrorReached, ...] = ()
+    notes: tuple[str, ...] = ()
     question: str = ""
     scene: str = ""
 

@@ -10,8 +10,11 @@ PYTEST_DONT_REWRITE: there are no assertions here, and `entry_point` has this pa
 
 from __future__ import annotations
 
+import atexit
 import math
+import os
 import secrets
+import sys
 from collections import deque
 from collections.abc import Generator, Iterator
 from pathlib import Path
@@ -25,6 +28,8 @@ ALPHA = 1e-6
 _SEED, _ALPHA, _WEIGHTS = pytest.StashKey[int](), pytest.StashKey[float](), pytest.StashKey[float]()
 _NEWS, _LATE = pytest.StashKey[deque[tuple[Any, ...]]](), pytest.StashKey[list[Any]]()
 """What checks have found and no report has told yet; and what came after the last report. See `checks`."""
+_CRASHED = pytest.StashKey[list[str]]()
+"""Tests in which a worker of xdist ended."""
 _FAILED, _NOTHING = 1, 5  # pytest.ExitCode
 _MARKER = (
     "fogproof(weight=1, calls=None, inconclusive='fail'): this test's share of the session's false-alarm probability relative to "
@@ -58,7 +63,8 @@ def pytest_configure(config: pytest.Config) -> None:
     told = getattr(config, "workerinput", {}).get("fogproof_seed")
     config.stash[_SEED] = told if told is not None else secrets.randbits(62) if seed is None else seed
     config.stash[_ALPHA] = alpha
-    config.stash[_NEWS], config.stash[_LATE] = deque(), []
+    config.stash[_NEWS], config.stash[_LATE], config.stash[_CRASHED] = deque(), [], []
+    atexit.register(_after_all, config.stash[_NEWS])
     folder = config.getoption("--fogproof-report")
     if folder == "":
         raise pytest.UsageError("--fogproof-report must name a folder, got '': is a variable of the shell not set?")
@@ -171,6 +177,21 @@ def pytest_testnodedown(node: Any) -> None:
     node.config.stash[_LATE] += getattr(node, "workeroutput", {}).get("fogproof", [])
 
 
+@pytest.hookimpl(optionalhook=True)
+def pytest_handlecrashitem(crashitem: str, sched: Any) -> None:
+    """Hear of a test that has ended its worker of xdist, and whose verdicts went with it."""
+    sched.config.stash[_CRASHED].append(crashitem)
+
+
+def _after_all(news: deque[tuple[Any, ...]]) -> None:
+    """Fail the process for what a thread found when the session had been told: Python has waited for it."""
+    if lost := [why for *_, why in _drained(news) if why]:
+        print(f"fogproof: after the session had ended, so that the process fails: {'; '.join(lost)}", file=sys.stderr)
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(_FAILED)
+
+
 def pytest_sessionfinish(session: pytest.Session) -> None:
     """Fail the session for what came after the last report, which could fail nothing else."""
     config = session.config
@@ -190,7 +211,7 @@ def pytest_terminal_summary(terminalreporter: Any, exitstatus: int, config: pyte
         if verdict:
             told[test, number] = verdict
     folder = config.getoption("--fogproof-report")
-    lost = [why for *_, why in late if why]
+    lost, crashed = [why for *_, why in late if why], config.stash[_CRASHED]
     if not told and not folder and not lost:
         return
     from fogproof_pytest.summary import summary, written
@@ -205,4 +226,4 @@ def pytest_terminal_summary(terminalreporter: Any, exitstatus: int, config: pyte
         exitstatus = exitstatus or _FAILED
     if folder:
         settings = (config.stash[_SEED], config.stash[_ALPHA], int(exitstatus), " ".join(config.invocation_params.args))
-        terminalreporter.write_line(f"report: {written(told, folder, *settings)}")
+        terminalreporter.write_line(f"report: {written(told, crashed, folder, *settings)}")

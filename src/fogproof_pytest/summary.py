@@ -35,8 +35,11 @@ def summary(told: Told, alpha: float, seed: int) -> list[str]:
     return lines
 
 
-def written(told: Told, folder: str, seed: int, alpha: float, exit_code: int, command: str) -> Path:
-    """Write the report of a session into a folder, and return its page."""
+def written(told: Told, crashed: list[str], folder: str, seed: int, alpha: float, exit_code: int, command: str) -> Path:
+    """Write the report of a session into a folder, and return its page.
+
+    crashed  tests in which a worker of xdist ended, whose verdicts went with it
+    """
     from fogproof.reports import prepare_folder, write_report
 
     prepare_folder(Path(folder))
@@ -47,6 +50,13 @@ def written(told: Told, folder: str, seed: int, alpha: float, exit_code: int, co
         body = {key: value for key, value in verdict.items() if key != "check"}
         again = f"pytest '{test}' --fogproof-seed={seed}"
         cases.append(case_record(name, body, title=verdict["check"], reproduce=again))
+    lost = "its process ended before it was finished: what it had found is lost"
+    names = {case["name"] for case in cases}
+    cases += [
+        case_record(test, None, status="error", reason=lost, reproduce=f"pytest '{test}' --fogproof-seed={seed}")
+        for test in dict.fromkeys(crashed)
+        if test not in names
+    ]
     now = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
     seconds = sum(float(verdict["seconds"]) for verdict in told.values())
     record = run_record(

@@ -10,8 +10,7 @@ import importlib.util
 import pytest
 
 from fogproof.catalogue import all_cases
-from fogproof.checks import fresh_seed
-from fogproof.checks import sampler as sampler_checks
+from fogproof.checks import fresh_seed, sampler_parts
 from fogproof.domains import UnitSphere
 from fogproof.verify import case_seed, run_case, select
 
@@ -38,7 +37,7 @@ def test_case_is_not_rejected(case):
 
 def test_broken_twin_is_rejected(case, monkeypatch):
     monkeypatch.setattr(
-        sampler_checks, "diagnosed", lambda *subject: ("", "")
+        sampler_parts, "diagnosed", lambda *subject: ("", "")
     )  # what it is is asked elsewhere, and dear
     seed = case_seed(SEED, case.name)
     for samples in (*(few for few in FEW if few < case.samples), case.samples):  # what few leave open, all must decide

@@ -1,5 +1,7 @@
 """`check_estimator` counts the reference's error, is exact for hits and misses, sees dependence, and says when it cannot tell."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -229,3 +231,20 @@ def test_bad_arguments_are_explained():
         check_estimator(exponential, ref(1.0), alpha=2)
     with pytest.raises(SubjectError, match="cost"):
         check_estimator(exponential, ref(1.0), cost=1.0, samples=1000)
+
+
+@pytest.mark.parametrize("given", [lambda ref: ref, lambda ref: {0: ref}, lambda ref: Reference(ref)])
+def test_what_draw_writes_into_the_reference_changes_nothing(given):
+    """A renderer may hand out a view of the buffer that it writes into."""
+    mine = np.array([0.5])
+
+    def draw(rng, n):
+        mine[0] = 0.6
+        return Draws(rng.random((n, 1)) + 0.1, order=np.zeros(n))
+
+    assert check_estimator(draw, given(mine), samples=10_000).outcome == "rejected"
+
+
+def test_an_object_that_draws_is_told_from_realisations():
+    with pytest.raises(SubjectError, match=r"an object of SimpleNamespace; pass its method: x\.draw"):
+        check_estimator(SimpleNamespace(draw=lambda rng, n: rng.random(n)), 0.5)

@@ -1,6 +1,7 @@
 """A check in parts says what it says in one piece; stopping early and going on never inflate the false alarms."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -87,3 +88,48 @@ def test_a_resolution_stops_what_is_clearly_right_and_goes_on_with_what_is_doubt
 
     verdict = check_sampler(nearly, LINE.pdf, LINE.domain, **options)
     assert verdict.outcome == "rejected", "what the first look only doubts, a later one rejects"
+
+
+OTHERS = [
+    replace(LINE, sample=lambda u: np.where(u[:, 0] < 0.25, np.inf, -2 * np.log1p(-u[:, 1]))),
+    replace(LINE, pdf=lambda x: 0.75 * np.exp(-x) * 1.001),
+    replace(LINE, atoms={np.inf: 0.26}),
+    replace(LINE, domain=HalfLine(-1)),
+]
+
+
+def test_tallies_of_another_check_are_refused():
+    check = SamplerCheck.of(LINE, None, 200_000, 1e-6, 7)
+    first, rest = check.tally([0]), check.tally(range(1, check.batches))
+    others = [SamplerCheck.of(other, None, 200_000, 1e-6, 7) for other in OTHERS]
+    others += [SamplerCheck.of(LINE, None, samples, 1e-6, seed) for samples, seed in ((200_001, 7), (200_000, 8))]
+    for other in others:
+        theirs = other.tally(range(1, other.batches))
+        with pytest.raises(InvalidValueError, match="must be of one check: the same subject, samples, seed"):
+            first.merged(theirs)
+        for foreign in (theirs.to_dict(), other.tally([0]).to_dict()):
+            with pytest.raises(InvalidValueError, match="must be of this check"):
+                check.read(json.loads(json.dumps(foreign)))
+        with pytest.raises(InvalidValueError, match="must be of this check"):
+            check.verdict(theirs)
+    assert check.verdict(first.merged(rest)).outcome == "not rejected"
+
+
+@pytest.mark.parametrize("batches", [[99], [-1], [0.5], ["x"]])
+def test_batches_are_those_there_are(batches):
+    with pytest.raises(InvalidValueError, match="batches must be whole numbers from 0 to"):
+        SamplerCheck.of(LINE, None, 200_000, 1e-6, 7).tally(batches)
+
+
+def test_a_state_that_nobody_wrote_is_refused():
+    check = SamplerCheck.of(LINE, None, 200_000, 1e-6, 7)
+    state = json.loads(json.dumps(check.tally([0]).to_dict()))
+    wrong = [{}, None, [], "x", state | {"fine": 3}, state | {"plane": "x"}, state | {"batches": "x"}]
+    wrong += [state | {"serial": [{"dtype": "f8", "shape": [1], "data": "eA=="}]}, state | {"batches": [0, 1]}]
+    for broken in wrong:
+        with pytest.raises(InvalidValueError, match=r"must be what Tally\.to_dict returned|must have drawn what"):
+            check.read(broken)
+    for drawn in (0, 10**9):
+        with pytest.raises(InvalidValueError, match="must have drawn what its batches hold"):
+            check.read(state | {"drawn": drawn})
+    assert check.read(state).drawn == check.sizes[0]

@@ -1,5 +1,7 @@
 """Identities of functions are checked point by point: weights that sum to one and fit their densities, majorants that bound."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -152,3 +154,13 @@ def test_the_resolution_of_a_bound_is_kept():
 
         missed += check_bound(f, 1.0, Interval(0.0, 1.0), evaluations=400).outcome != "rejected"
     assert missed <= 12  # P(more | 1 %) < 1e-5
+
+
+def test_a_strategy_may_draw_from_a_generator():
+    uniform = (lambda rng, n: rng.random(n), np.ones_like, None)
+    linear = SimpleNamespace(sample=lambda rng, n: np.sqrt(rng.random(n)), pdf=lambda x: 2 * x, dimensions=None)
+    right = check_mis([uniform, linear], lambda x: np.stack([1 / (1 + 2 * x), 2 * x / (1 + 2 * x)], axis=-1))
+    assert right.outcome == "not rejected"
+    assert check_mis([uniform, linear], lambda x: np.full((len(x), 2), 0.5)).outcome == "rejected"
+    with pytest.raises(InvalidValueError, match=r"strategies\[1\]\.dimensions must be a whole number"):
+        check_mis([uniform, (linear.sample, linear.pdf, 0.5)], lambda x: x)

@@ -26,7 +26,9 @@ def test_a_parameter_costs_half_the_logarithm_of_the_samples():
     plain = Hypothesis("a", "b", lambda setting, value: None)
     fitted = Hypothesis("a", "b", lambda setting, value: None, trials=(0.5,))
     known = Hypothesis("a", "b", lambda setting, value: None, fitted=2)
-    assert [one.price(10**6) for one in (plain, fitted, known)] == pytest.approx([0, math.log(1e3), 2 * math.log(1e3)])
+    likely = Hypothesis("a", "b", lambda setting, value: None, trials=(0.5,), prior=3.0)
+    prices = [one.price(10**6) for one in (plain, fitted, known, likely)]
+    assert prices == pytest.approx([0, math.log(1e3), 2 * math.log(1e3), math.log(1e3) - 3])
 
 
 @pytest.mark.parametrize(("alpha", "miss"), [(1e-6, 0.01), (1e-3, 0.1)])

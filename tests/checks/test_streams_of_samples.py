@@ -29,7 +29,7 @@ def successions(u, batch=1 << 16):
 def test_lagged_products_are_those_of_a_loop():
     u = np.random.default_rng().random((LAGS * 20 + 7, 2))
     sums = Successions.of([in_units(column) for column in u.T], True)
-    plain = in_units(u)
+    plain = in_units(u).astype(np.int64)
     c = (np.concatenate([plain, 2 * np.abs(plain) - 2**14], axis=1) >> 9)[: LAGS * 20]
     for lag in (1, 2, 17, 63, 64):
         expected = c[:-lag].T @ c[lag:]

@@ -317,11 +317,12 @@ def test_two_images_are_compared_without_an_oracle(tmp_path, truth, rng):
         "a": noisy(truth.value, rng),
         "b": noisy(truth.value, rng, 0.05),
         "c": noisy(1.05 * truth.value, rng),
+        "d": noisy(truth.value, rng),
     }.items():
         format_of("x.exr").write(tmp_path / f"{name}.exr", layers(value))
-    a, b, c = (tmp_path / f"{name}.exr" for name in "abc")
+    a, b, c, d = (tmp_path / f"{name}.exr" for name in "abcd")
     assert compare_pictures([a], [b]).verdict.outcome == "not rejected"
-    assert compare_pictures([a], [a]).verdict.outcome == "not rejected"
+    assert compare_pictures([a], [d]).verdict.outcome == "not rejected"
     assert compare_pictures([a], [c]).verdict.outcome == "rejected"
 
 
@@ -356,7 +357,11 @@ def test_the_command_writes_a_verdict_a_page_and_maps(tmp_path, truth, rng):
         "p-values.png",
     }
     assert set(format_of("maps.exr").read(folder / "maps.exr")) == {"z.Y", "ratio.Y", "reference.Y"}
-    assert "<h2" in (folder / "index.html").read_text()
+    page = (folder / "index.html").read_text()
+    assert page.count("<img") == 3
+    assert page.index("<img") < page.index('<h2 id="cases">Verdict')  # the pictures are the first that is seen
+    assert '<h1 class="good">' in page
+    assert "A relative bias of the image above " in page
     prepare_folder(folder, ("index.html", "results.json", "maps.exr"))  # it is seen to be ours
     channels = format_of(out).read(out)
     format_of(out).write(out, {"Y": 1.1 * channels["Y"]})

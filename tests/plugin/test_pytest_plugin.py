@@ -322,3 +322,36 @@ def test_what_comes_after_the_last_test_fails_the_session(tmp_path, workers):
     assert (
         "so that the session fails: check_estimator was called by the fixture of test_mine.py::test_mine" in out.stdout
     )
+
+
+OUTLIVES = """
+    import threading, time
+
+    def later(check, ended):
+        while not ended():
+            time.sleep(0.01)
+        time.sleep(1)
+        check(lambda rng, n: rng.random(n), 0.9, samples=2000)
+
+    def test_mine(fogproof):
+        check = fogproof.check_estimator
+        threading.Thread(target=later, args=(check, lambda: not threading.main_thread().is_alive())).start()
+"""
+
+
+def test_a_thread_that_outlives_the_session_is_not_silent(tmp_path):
+    out = run(tmp_path, OUTLIVES, "-p", "no:threadexception")
+    assert "1 passed" in out.stdout
+    assert out.returncode == 1
+    assert "after the session had ended, so that the process fails: check_estimator was called by" in out.stderr
+
+
+def test_a_test_that_ends_its_worker_is_on_the_page(tmp_path):
+    dead = RIGHT + "\n    def test_dead(fogproof):\n        __import__('os')._exit(3)\n"
+    out = run(tmp_path, dead, "-n", "1", f"--fogproof-report={tmp_path}/report")
+    assert out.returncode == 1
+    cases = json.loads((tmp_path / "report" / "results.json").read_text())["cases"]
+    (lost,) = (case for case in cases if case["name"] == "test_mine.py::test_dead")
+    assert (lost["status"], "ended before it was finished" in lost["reason"]) == ("error", True)
+    assert "test_mine.py::test_dead" in (tmp_path / "report" / "index.html").read_text()
+    assert len(cases) == 2

@@ -1,17 +1,28 @@
-"""In a real browser the page shows its figures, filters, opens what the address names, asks the network for nothing,
-fits a narrow screen and has no serious barrier for anyone; with scripts switched off it is complete as well.
+"""In a real browser every kind of page shows its figures, filters, opens what the address names, asks the network for nothing,
+fits a narrow screen and has no serious barrier for anyone; with scripts switched off it is complete as well, and on paper.
 """
 
 from __future__ import annotations
 
+import base64
 import json
 import shutil
+import subprocess
 from importlib import resources
 
+import numpy as np
 import pytest
+from click.testing import CliRunner
 from report_records import HOSTILE, case, record, study, typical
 
+from fogproof import Film, ImageScene, Medium, Perspective, PointLight
+from fogproof.analytic import image
+from fogproof.cli.commands import cli
+from fogproof.images.compare import compare_image
+from fogproof.images.formats import format_of
+from fogproof.images.report import write_comparison as write_image
 from fogproof.reports import write_comparison, write_gallery, write_report
+from fogproof.reports.pages.images import write_relations_page, write_renders_page
 
 webdriver = pytest.importorskip("selenium.webdriver", reason="selenium is not installed: pip install --group test")
 CHROMIUM, DRIVER = (shutil.which(name) for name in ("chromium", "chromedriver"))
@@ -60,7 +71,52 @@ def pages(tmp_path_factory):
     written = {name: write_report(one, tmp_path_factory.mktemp(name)).as_uri() for name, one in records.items()}
     both = write_comparison(records["typical"], records["hostile"], tmp_path_factory.mktemp("comparison"))
     gallery = write_gallery(tmp_path_factory.mktemp("gallery"), names=["fog", "phase-polar"])
-    return written | {"comparison": both.as_uri(), "gallery": gallery.as_uri()}
+    written |= {"comparison": both.as_uri(), "gallery": gallery.as_uri()}
+    of_images = image_pages(tmp_path_factory.mktemp("images"))
+    return written | {"stability": stability_page(tmp_path_factory.mktemp("stability")).as_uri()} | of_images
+
+
+def image_pages(folder):
+    """Return the pages of an image that is upside down, of renders and of relations."""
+    scene = ImageScene(
+        Medium(0.02, 0.08),
+        Perspective((0, 0, 0), (0, 0, 1), 0.7, Film(32, 24), wall=10.0),
+        "single",
+        PointLight((0.6, 0.8, 4), 5.0),
+    )
+    format_of("a.npy").write(folder / "a.npy", {"Y": image(scene).value[::-1].astype(np.float32)})
+    one = write_image(compare_image([folder / "a.npy"], scene), folder / "one")
+    outcomes = ("rejected", "not rejected", "inconclusive", "not rendered", "error")
+    told = {
+        "reason": HOSTILE["script"],
+        "ratio": "1.01 (0.9 to 1.1)",
+        "resolution": "0.004",
+        "seconds": "1.5",
+        "page": "",
+    }
+    renders = [{"scene": f"scene-{outcome}", "outcome": outcome, **told} for outcome in outcomes]
+    sides = {
+        "relation": "reciprocity",
+        "isolates": "the phase function",
+        "first": "0.1",
+        "second": "0.1",
+        "difference": "+0.01",
+    }
+    relations = [row | sides | {"message": HOSTILE["attribute"]} for row in renders]
+    return {
+        "image": one.as_uri(),
+        "renders": write_renders_page(renders, "mine", folder / "renders").as_uri(),
+        "relations": write_relations_page(relations, "mine", folder / "relations").as_uri(),
+    }
+
+
+def stability_page(folder):
+    command = ["stability", "--short", "phase/rayleigh", "-o", str(folder)]
+    CliRunner().invoke(cli, command, standalone_mode=False, catch_exceptions=False)
+    return folder / "stability.html"
+
+
+EVERY_KIND = ("typical", "hostile", "study", "comparison", "gallery", "stability", "image", "renders", "relations")
 
 
 def visit(browser, address):
@@ -85,7 +141,7 @@ def names_shown(browser):
     return browser.execute_script(script)
 
 
-@pytest.mark.parametrize("name", ["typical", "hostile", "study", "comparison", "gallery"])
+@pytest.mark.parametrize("name", EVERY_KIND)
 def test_no_error_no_request_and_no_sideways_scrolling(browser, pages, name):
     """Nothing on the console, nothing asked of the network, and every word reachable on narrow screens."""
     visit(browser, pages[name])
@@ -103,7 +159,7 @@ def test_no_error_no_request_and_no_sideways_scrolling(browser, pages, name):
     assert [url for url in requests(browser) if not url.startswith("data:")] == [pages[name]]
 
 
-@pytest.mark.parametrize(("name", "figures"), [("typical", 15), ("study", 3), ("gallery", 2)])
+@pytest.mark.parametrize(("name", "figures"), [("typical", 14), ("study", 3), ("gallery", 2)])
 def test_figures_are_visible(browser, pages, name, figures):
     visit(browser, pages[name])
     open_all(browser)
@@ -201,7 +257,7 @@ def paint(browser, scheme):
     browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": features})
 
 
-@pytest.mark.parametrize("name", ["typical", "hostile", "study", "comparison", "gallery"])
+@pytest.mark.parametrize("name", EVERY_KIND)
 def test_no_serious_barrier(browser, pages, name):
     """axe-core's findings of impact serious or critical, every section open, in light; in dark what colours can spoil."""
     visit(browser, pages[name])
@@ -225,6 +281,29 @@ def test_no_serious_barrier(browser, pages, name):
             assert serious == []
     finally:
         paint(browser, "")
+
+
+@pytest.mark.skipif(not shutil.which("pdftotext"), reason="no pdftotext: apt-get install poppler-utils")
+@pytest.mark.parametrize("name", EVERY_KIND)
+def test_no_heading_is_stranded_on_paper(browser, pages, name, tmp_path):
+    """No page of paper ends with a heading, the first line of a section, or the head of a table."""
+    visit(browser, pages[name])
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+    wanted = "h2, h3, h4, summary, thead tr"
+    try:
+        script = (
+            f"return [...document.querySelectorAll('{wanted}')].filter(it => it.offsetParent).map(it => it.innerText)"
+        )
+        heads = {"".join(text.split()) for text in browser.execute_script(script)}
+    finally:
+        browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
+    printed = browser.execute_cdp_cmd("Page.printToPDF", {"paperWidth": 8.27, "paperHeight": 11.69})
+    (tmp_path / "page.pdf").write_bytes(base64.b64decode(printed["data"]))
+    subprocess.run(["pdftotext", "-layout", tmp_path / "page.pdf"], check=True, timeout=60)
+    sheets = [sheet.split("\n") for sheet in (tmp_path / "page.txt").read_text(encoding="utf-8").split("\f")]
+    ends = [["".join(line.split()) for line in sheet if line.strip()][-1:] for sheet in sheets]
+    assert len(ends) > 1
+    assert not [end for end in ends if end and end[0] in heads]
 
 
 def test_keyboard_reaches_everything(browser, pages):

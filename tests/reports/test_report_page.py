@@ -98,7 +98,7 @@ def test_figures_of_failures_are_drawn_and_a_pass_has_one(typical_page):
     drawn = [name for name in figures if name.startswith("mitsuba-hg-g=0.95")]
     assert len(drawn) == 4
     assert len([name for name in figures if name.startswith("hg-g=0.95")]) == 2
-    assert len(page.all("figure")) == 3 + 4 + 2 + 1 + 1 + 2 + 2
+    assert len(page.all("figure")) == 2 + 4 + 2 + 1 + 1 + 2 + 2
     labels = [it["aria-label"] for it in page.all("div") if it.get("role") == "img"]
     assert len(labels) == len(page.all("figure"))
     assert all(len(label) > 40 for label in labels)
@@ -107,7 +107,7 @@ def test_figures_of_failures_are_drawn_and_a_pass_has_one(typical_page):
 def test_figures_beyond_the_budget_are_linked(tmp_path, monkeypatch):
     monkeypatch.setattr(page_module, "INLINE_BYTES", 0)
     page = Page(write_page(parse_record(record([case("a", "rejected")])), tmp_path))
-    assert len(page.all("figure")) == 2
+    assert len(page.all("figure")) == 1
     assert page.words.count("Figure beside this page") == 2
 
 

@@ -195,3 +195,45 @@ def test_errors_of_many_magnitudes_stay_inside_the_figure():
     assert "nan" not in picture.svg
     assert "inf" not in picture.svg
     assert "1e-18" in picture.words
+
+
+def test_the_answer_is_told_at_once(tmp_path):
+    """To each error who is soonest, of all and of the unbiased, by their labels; what is open is called that."""
+    told = study()
+    first = {"name": "march", "how": "measured", "seconds": 8.2e-5, "beside": ["delta"], "waiting": []}
+    other = {"name": "delta", "how": "less-than", "seconds": 7e-4, "beside": [], "waiting": []}
+    late = {"name": "delta", "how": "extrapolated", "seconds": 2.5, "beside": [], "waiting": ["ratio", "delta + sobol"]}
+    told["scenes"][0]["answer"] |= {
+        "soonest": [
+            {"error": 0.01, "all": first, "unbiased": other},
+            {"error": 0.001, "all": first, "unbiased": None},
+            {"error": 0.0001, "all": first, "unbiased": late},
+        ],
+        "notes": ["This is to be noted."],
+    }
+    labels = {entry["name"]: entry["label"] for entry in told["scenes"][0]["estimators"]}
+    words = "".join(Page(write_report(told, tmp_path)).words.split())
+    answers = words[words.index("Soonesttoanerror") : words.index("Whetheritisbiased")]
+    for text in (
+        f"1 % {labels['march']} in 82 µs not to be told from {labels['delta']}",
+        f"{labels['march']}: ⚑ biased, as declared",
+        f"Of the unbiased 1 % {labels['delta']} in less than 700 µs",
+        "0.1 % nobody within these counts",
+        f"0.01 % open: {labels['delta']} in about 2.5 s",
+        f"{labels['ratio']}, {labels['delta + sobol']} are not there yet",
+        "This is to be noted.",
+    ):
+        assert "".join(text.split()) in answers, text
+    assert "Exactisbest." not in answers
+    html = (tmp_path / "index.html").read_text(encoding="utf-8")
+    assert html.index("<h4>") < html.index(
+        '<div class="beside">'
+    )  # on narrow screens the picture follows the name of its scene
+
+
+def test_what_to_raise_names_each_estimator_once_and_leads_to_it(tmp_path):
+    """Names in the advice are links; the list of them is not told again."""
+    page = Page(write_report(study(advice="Too few samples: haze / ratio. Raise `replicates` to 32."), tmp_path))
+    (told,) = re.findall(r"<li>[^\n]*Whether it is biased cannot be said yet\.[^\n]*", page.html)
+    (target,) = re.findall(r'<a href="#([^"]+)"><bdi>haze /<wbr> ratio</bdi></a>', told)
+    assert any(unquote(target) == it.get("id") for it in page.all("div"))

@@ -44,7 +44,7 @@ def ran(tmp_path_factory):
 def test_it_says_what_is_best(ran):
     folder, out = ran
     assert out.returncode == 0, out.stderr
-    assert "Which is best beside a lamp?\n  lit: " in out.stderr
+    assert "Which is best beside a lamp?\n  lit\n    " in out.stderr
     assert re.search(" is (soonest|first, though not to be told from [^:]+): 1 % in ", out.stderr)
     assert "is biased by construction" in out.stderr
     rows = [line.split()[0] for line in out.stdout.splitlines() if line.startswith("  ")]

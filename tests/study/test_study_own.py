@@ -1,9 +1,12 @@
 """One's own estimator in a study: judged like any other, never mixed with what an older state of its source drew."""
 
 import json
+import os
+import signal
 import subprocess
 import sys
 import textwrap
+import time
 
 import pytest
 from study_fixtures import RAY, toml
@@ -231,3 +234,64 @@ def test_who_ignores_the_generator_is_told_before_anything_runs(tmp_path):
         try_own(read_study(study_file(tmp_path / "c", [{"kind": "my_module:Analog"}], three)))
     exact = MINE.replace("-np.log1p(-u) > self.tau", "0 * u + np.exp(-self.tau)").replace("p * (1 - p)", "0.0")
     try_own(read_study(study_file(tmp_path / "b", [{"kind": "my_module:Analog"}], exact)))
+
+
+LEAVING = """
+    import threading, time
+
+    class Leaving:
+        def __init__(self, scene):
+            pass
+
+        def draw(self, rng, n):
+            threading.Thread(target=time.sleep, args=(600,)).start()
+            return rng.random(n)
+"""
+
+
+def test_threads_that_it_leaves_do_not_hold_the_study(tmp_path):
+    path = study_file(tmp_path / "s", [{"kind": "my_module:Leaving"}], LEAVING, sobol=False)
+    words = [sys.executable, "-m", "fogproof", "study", str(path), "-o", str(tmp_path / "out"), "--workers", "1"]
+    ran = subprocess.run(words, capture_output=True, text=True, timeout=300, start_new_session=True)
+    assert json.loads((tmp_path / "out" / "results.json").read_text())["state"] == "finished", ran.stderr
+    assert (tmp_path / "out" / "index.html").exists()
+
+
+WAITING = """
+    import pathlib, time
+
+    class Waiting:
+        def __init__(self, scene):
+            pass
+
+        def draw(self, rng, n):
+            if n > 64:
+                pathlib.Path(__file__).with_name("waits").touch()
+                time.sleep(600)
+            return rng.random(n)
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs signals")
+def test_a_stop_says_what_it_waits_for_and_a_second_one_ends_it(tmp_path):
+    path = study_file(tmp_path / "s", [{"kind": "my_module:Waiting"}], WAITING, sobol=False)
+    words = [sys.executable, "-m", "fogproof", "study", str(path), "-o", str(tmp_path / "out"), "--workers", "1"]
+    child = subprocess.Popen(words, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, preexec_fn=heard)
+    until = time.monotonic() + 300
+    try:
+        while not (path.parent / "waits").exists() and time.monotonic() < until:
+            time.sleep(0.05)
+        child.send_signal(signal.SIGTERM)
+        told = child.stderr.readline()
+        assert told.startswith(b"fogproof: stopping: waiting for "), told
+        assert b"a second signal ends at once" in told
+        child.send_signal(signal.SIGTERM)
+        assert child.wait(60) == -signal.SIGTERM
+    finally:
+        child.kill()
+        child.wait()
+        child.stderr.close()
+
+
+def heard():
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)

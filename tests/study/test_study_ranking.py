@@ -64,7 +64,7 @@ def test_a_sentence_says_no_more_than_the_intervals(status):
         said = ranked(scene)
         beside = [m for m in scene if m.record["speed"]["rank"] > 1 and m.record["speed"]["relative"]["high"] >= 1]
         first = next(m for m in scene if m.record["speed"]["rank"] == 1)
-        head = said["text"].split(". ")[0]
+        head = said["text"].split("\n")[0]
         seen.add(bool(beside))
         if beside:
             names = " and ".join(m.name for m in beside)
@@ -79,7 +79,34 @@ def test_who_is_first_to_several_errors_is_named_once():
     first, other = equal(np.random.default_rng(), 2, scatter=0.0)
     late = Times(9 * other.seconds)
     other.reaches = (other.reaches[0], *(Reach(error, "measured", "", 1.0, late) for error in TARGETS[1:]))
-    head = ranked([first, other])["text"].split(". ")[0]
+    head = ranked([first, other])["text"].split("\n")[0]
     assert head.startswith("N0 is first, though not to be told from n1: 1 % in ")
     assert "; soonest: 0.1 % and 0.01 % in " in head
     assert head.count("N0") + head.count("n0") == 1
+
+
+def test_the_table_of_the_soonest_says_what_the_sentences_say():
+    """To each error: who, in what time, who may be as soon; of the unbiased apart, where the soonest of all is none."""
+    rng = np.random.default_rng()
+    fast, other = equal(rng, 2, scatter=0.0)
+    fast.status = "known"
+    late = Timed("late", 9 * other.seconds)
+    late.reaches = (*late.reaches[:2], Reach(TARGETS[2], "not-reached", "", None, Times(late.seconds / 90)))
+    said = ranked([fast, other, late])
+    rows = said["soonest"]
+    assert [row["error"] for row in rows] == list(TARGETS)
+    assert [(row["all"]["name"], row["all"]["beside"]) for row in rows] == [("n0", ["n1"])] * 3
+    assert [(row["unbiased"]["name"], row["unbiased"]["beside"]) for row in rows] == [("n1", [])] * 3
+    assert [row["unbiased"]["waiting"] for row in rows] == [[], [], ["late"]]
+    assert rows[0]["all"]["seconds"] == fast.reaches[0].times.estimate.value
+    assert said["notes"] == said["text"].split("\n")[-len(said["notes"]) :]
+
+
+def test_those_that_are_not_named_are_counted():
+    """Of many that are slower three are named, and how many more there are is said."""
+    scene = [Timed(f"n{k}", np.full(ROUNDS, 10.0**k) * np.linspace(1, 1.01, ROUNDS)) for k in range(7)]
+    (said,) = ranked(scene)["notes"]
+    assert (
+        said
+        == "To 1 % n0 is 10 times as fast as n1, 100 times as fast as n2, 1 000 times as fast as n3 and more than that of 3 others."
+    )

@@ -14,7 +14,7 @@ from fogproof.study import batches as drawing
 from fogproof.study import run_study
 from fogproof.study.fixed_work import COLUMNS, GROUPS, over_fixed_work, summed_up, time_fixed_work
 from fogproof.study.history import compare
-from fogproof.study.speed_change import ASIDE, LEAST, became, speed_changes
+from fogproof.study.speed_change import ASIDE, LEAST, SHARE, became, speed_changes
 
 ALPHA = 1e-6
 
@@ -35,7 +35,8 @@ def estimator(rng, seconds=1e-3, machine=(1.0, 1.0, 1.0), batches=96, scatter=0.
     own = seconds * float(weights @ np.array(machine)) * np.exp(scatter * rng.standard_normal(batches))
     fixed = 2e-5 * np.array(machine) * np.exp(scatter * rng.standard_normal((batches, 3)))
     own[rng.random(batches) < 0.02] *= 5  # something came between
-    timing = {"count": 64, "seconds": own.mean(), "low": 0.98 * own.mean(), "high": 1.02 * own.mean()}
+    middle = float(np.median(own))
+    timing = {"count": 64, "seconds": middle, "low": 0.98 * middle, "high": 1.02 * middle}
     return {"speed": {"counts": [{**timing, "fixed_work": summed_up(over_fixed_work(own, fixed))}]}}
 
 
@@ -89,10 +90,9 @@ def test_no_change_is_said_of_equal_code_whatever_the_machine_does(rng):
 def test_a_change_of_the_stated_resolution_is_said(rng):
     said = 0
     for _ in range(50):
-        before = estimator(rng)
-        factor = speed_changes([(before, estimator(rng))], True).changes[0][0].resolution(ALPHA)
+        before, machine = estimator(rng), np.full(3, math.exp(0.02 * rng.normal()))
+        factor = speed_changes([(before, estimator(rng, machine=machine))], True).changes[0][0].resolution(ALPHA)
         assert factor < 1.8  # and it is a resolution that serves
-        machine = np.full(3, math.exp(rng.normal()))
         ((change,),) = speed_changes([(before, estimator(rng, 1e-3 * factor, machine))], True).changes
         said += change.became(ALPHA) == ["slower"]
         assert abs(change.off - math.log(factor)) < change.reach(1e-9)
@@ -104,8 +104,20 @@ def test_sorts_that_disagree_leave_a_change_open(rng):
     work = after["speed"]["counts"][0]["fixed_work"]
     work |= {"interpreted": 2 * work["interpreted"], "all": 2 ** (1 / 3) * work["all"]}
     ((change,),) = speed_changes([(before, after)], True).changes
-    assert change.aside == pytest.approx(ASIDE + 2 / 3 * math.log(2), abs=0.01)
+    assert change.aside == pytest.approx(ASIDE + (2 + SHARE) / 3 * math.log(2), abs=0.02)
     assert change.became(ALPHA) == []
+
+
+def test_a_machine_that_ran_otherwise_leaves_more_open(rng):
+    """Fixed work follows the machine in part: a change is said where both runs met it alike, not where one took twice as long."""
+    before, after = estimator(rng, scatter=1e-3), estimator(rng, 1.3e-3, scatter=1e-3)
+    slow = estimator(rng, 1.3e-3, machine=(2.0, 2.0, 2.0), scatter=1e-3)
+    ((alike,),), ((other,),) = (speed_changes([(before, one)], True).changes for one in (after, slow))
+    assert alike.became(ALPHA) == ["slower"]
+    assert other.off == pytest.approx(math.log(1.3), abs=0.02)
+    assert other.aside == pytest.approx(ASIDE + SHARE * math.log(2), abs=0.02)
+    assert other.became(ALPHA) == []
+    assert other.resolution(ALPHA) > 1.8 * alike.resolution(ALPHA)
 
 
 def test_times_are_compared_at_a_count_that_both_runs_have(rng):
@@ -136,6 +148,7 @@ def alone(tmp_path_factory):
 def times_as_slow(record, factor):
     after = copy.deepcopy(record)
     for timing in after["scenes"][0]["estimators"][0]["speed"]["counts"]:
+        timing |= {key: factor * timing[key] for key in ("seconds", "low", "high")}
         timing["fixed_work"] |= {key: factor * timing["fixed_work"][key] for key in COLUMNS}
     return after
 
@@ -153,7 +166,8 @@ def test_one_estimator_alone_is_told_to_be_slower(alone):
 
 @pytest.mark.parametrize("other", [{"numpy": "1.0"}, {"cores": 1000}])
 def test_on_another_machine_fixed_work_tells_nothing(alone, other):
-    after = times_as_slow(alone, 100)
+    after = times_as_slow(alone, 3)
+    assert compare(alone, after)["worse"]
     after["environment"] = after["environment"] | other
     found = compare(alone, after)
     assert found["against"] == "nothing"

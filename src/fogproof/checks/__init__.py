@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from fogproof.checks.mis import check_mis
     from fogproof.checks.planning import samples_for
     from fogproof.checks.reciprocity import check_reciprocity
-    from fogproof.checks.sampler import SamplerCheck, check_sampler
+    from fogproof.checks.sampler import check_sampler, sampler_check
+    from fogproof.checks.sampler_parts import SamplerCheck
     from fogproof.checks.streams import batch_generator as batch_generator
     from fogproof.checks.streams import batch_sizes as batch_sizes
     from fogproof.checks.streams import fresh_seed
@@ -55,6 +56,7 @@ __all__ = [
     "check_streams",
     "compare_estimators",
     "fresh_seed",
+    "sampler_check",
     "samples_for",
 ]
 
@@ -65,7 +67,7 @@ _HOMES = {
     "Outcome": "verdict",
     "RejectedError": "verdict",
     "Resolution": "verdict",
-    "SamplerCheck": "sampler",
+    "SamplerCheck": "sampler_parts",
     "Subject": "subject",
     "Tally": "tally",
     "Verdict": "verdict",
@@ -75,6 +77,7 @@ _HOMES = {
     "compare_estimators": "compare",
     "fresh_seed": "streams",
     "jsonable": "verdict",
+    "sampler_check": "sampler",
     "samples_for": "planning",
     "within": "limits",
 }

@@ -104,6 +104,11 @@ def count_of(draw: Any) -> int | None:
     """Return how many realisations a finite set holds, None for an estimator that is called."""
     if callable(draw):
         return None
+    if callable(getattr(draw, "draw", None)):
+        name = type(draw).__name__
+        raise SubjectError(
+            f"draw must be a function or realisations, got an object of {name}; pass its method: x.draw", "draw"
+        )
     value = as_array("realisations", draw.value if isinstance(draw, Draws) else draw)
     if value.ndim not in (1, 2) or len(value) < 2:
         message = f"realisations must be an array (n,) or (n, channels) with n >= 2, got {value.shape}"

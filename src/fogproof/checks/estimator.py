@@ -66,7 +66,7 @@ def check_estimator(
     precision    "float32": values are computed in single precision, and their rounding is no error
     resolution   a bias of this size, in the unit of the values, is small enough: the check ends as soon as it would have been
                  caught, and is inconclusive if it would not
-    samples      most realisations
+    samples      most realisations; of those that are already there, all are judged
     alpha        false-alarm probability of this call with everything in it
     seed         any whole number; None draws a fresh one, which the verdict states
 
@@ -77,6 +77,7 @@ def check_estimator(
     """
     started = time.perf_counter()
     alpha, seed = alpha_of(alpha), seed_of(seed)
+    reference = _held(reference)
     count = count_of(draw)
     samples = samples_of(samples) if count is None else count
     if tails not in ("unknown", "light"):
@@ -128,6 +129,13 @@ def _looks(samples: int, alpha: float, resolution: float | None) -> tuple[list[i
     number("resolution", resolution, "must be > 0", 0, open_ends=True)
     sizes, ends = growing_sizes(samples)
     return sizes, dict.fromkeys(ends, alpha / len(ends))
+
+
+def _held(reference: Reference | float | Known) -> Reference | dict[int, Reference]:
+    """Return references with arrays of their own: what `draw` writes into the caller's changes nothing."""
+    if isinstance(reference, Mapping):
+        return {label: Reference.of("reference", one) for label, one in reference.items()}
+    return Reference.of("reference", reference)
 
 
 def _labels_of(reference: Known) -> frozenset[int]:

@@ -48,7 +48,7 @@ def check_family(
     make        parameter -> a sampler (`sample`, `pdf`, `domain`, `dimensions`; `atoms`, `eval`) or an estimator (`draw`,
                 `reference`); a dict `options` of either holds further arguments of its check
     parameters  a Hypothesis strategy, or a sequence of parameters, simple ones first
-    members     how many parameters are tried
+    members     how many parameters are tried; of a list, all are
     samples     most samples of the search, 100 for each member at least; shrinking may take as many again
     alpha       false-alarm probability of the whole search
     options     further arguments of `check_sampler` or `check_estimator`, the same for all members

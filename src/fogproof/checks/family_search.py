@@ -11,7 +11,8 @@ from inspect import signature
 from typing import Any
 
 from fogproof.checks.estimator import check_estimator
-from fogproof.checks.sampler import check_sampler, explained, sampler_check
+from fogproof.checks.sampler import check_sampler, sampler_check
+from fogproof.checks.sampler_parts import explained
 from fogproof.checks.subject import call
 from fogproof.checks.verdict import Finding, Verdict
 from fogproof.doing import on_behalf_of

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from fogproof.checks.arguments import samples_of, seed_of
+from fogproof.checks.arguments import samples_of, seed_of, whole
 from fogproof.checks.diagnosis import likely_cause
 from fogproof.checks.draws import as_array
 from fogproof.checks.streams import batch_generator
@@ -38,7 +38,8 @@ def check_mis(
 ) -> Verdict:
     """Test the weights of multiple importance sampling (Veach & Guibas 1995) on common points; nothing about it is statistical.
 
-    strategies  samplers with `sample(u)`, `pdf(x)` and `dimensions`, or tuples of these three; on one domain and in one measure
+    strategies  samplers with `sample(u)`, `pdf(x)` and `dimensions`, or tuples of these three; on one domain and in one measure;
+                `sample(rng, n)` where `dimensions` is None
     weights     x -> (n, strategies), or one function x -> (n,) for each strategy
     counts      samples taken with each strategy, equal by default
     exponent    of the power heuristic, w_i ~ (n_i p_i)^exponent: 1 is the balance heuristic; None asks for a sum of one alone
@@ -83,21 +84,23 @@ class _Technique:
     index: int
     sample: Callable[[np.ndarray], Any]
     pdf: Callable[[np.ndarray], Any]
-    dimensions: int
+    dimensions: int | None
 
     @staticmethod
     def of(index: int, strategy: Any) -> _Technique:
-        if isinstance(strategy, tuple) and len(strategy) == 3:
-            return _Technique(index, *strategy)
-        parts: list[Any] = [getattr(strategy, name, None) for name in ("sample", "pdf", "dimensions")]
-        if any(part is None for part in parts):
+        tuples = isinstance(strategy, tuple) and len(strategy) == 3
+        if not tuples and not all(hasattr(strategy, name) for name in ("sample", "pdf", "dimensions")):
             rule = "must have sample(u), pdf(x) and dimensions, or be a tuple of them"
             raise InvalidValueError(f"strategies[{index}]", rule, strategy)
-        return _Technique(index, *parts)
+        sample, pdf, k = strategy if tuples else (strategy.sample, strategy.pdf, strategy.dimensions)
+        if k is not None:
+            k = whole(f"strategies[{index}].dimensions", k, 1)
+        return _Technique(index, sample, pdf, k)
 
     def points(self, rng: np.random.Generator, n: int) -> np.ndarray:
         what = f"strategies[{self.index}].sample(u)"
-        result = call(what, self.sample, rng.random((n, self.dimensions)))
+        given = (rng, n) if self.dimensions is None else (rng.random((n, self.dimensions)),)
+        result = call(what, self.sample, *given)
         draw = result if isinstance(result, Draw) else Draw(result)
         x = as_array(what, draw.x)
         return x if draw.valid is None else x[np.asarray(draw.valid, dtype=bool)]

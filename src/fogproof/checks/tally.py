@@ -43,6 +43,7 @@ class Tally:
     given_up samples that the sampler itself gave up on
     calls    (calls, k, 32) coarse counts of the first calls, where a stream may be stratified
     watch    what was seen of each promise
+    check    fingerprint of the check that drew them: only tallies of one check merge
     """
 
     batches: tuple[int, ...]
@@ -61,6 +62,7 @@ class Tally:
     given_up: int
     calls: np.ndarray
     watch: Watch = field(repr=False)
+    check: str = ""
 
     @property
     def continuous(self) -> int:
@@ -68,7 +70,10 @@ class Tally:
         return int(self.fine[0].sum())
 
     def merged(self, other: Tally) -> Tally:
-        """Return the tally of both; the batches of `self` come first."""
+        """Return the tally of both, which are of one check; the batches of `self` come first."""
+        if self.check and other.check and self.check != other.check:
+            rule = "must be of one check: the same subject, samples, seed and version"
+            raise InvalidValueError("tallies", rule, f"those of {self.check} and {other.check}")
         if other.drawn == 0:
             return self
         if self.drawn == 0:
@@ -99,12 +104,14 @@ class Tally:
             self.given_up + other.given_up,
             np.concatenate([self.calls, other.calls])[:CALLS],
             self.watch.merged(other.watch),
+            self.check or other.check,
         )
 
     def to_dict(self) -> dict[str, Any]:
         """Return the JSON-ready form."""
         serial = self.serial
         return {
+            "check": self.check,
             "batches": list(self.batches),
             "drawn": self.drawn,
             "fine": [_packed(counts) for counts in self.fine],
@@ -127,6 +134,14 @@ class Tally:
     @staticmethod
     def from_dict(state: dict[str, Any], watch: Watch) -> Tally:
         """Return the tally that `to_dict` wrote; `watch` supplies the subject."""
+        try:
+            return Tally._of(state, watch)
+        except (KeyError, TypeError, ValueError, AttributeError, OverflowError, zlib.error) as error:
+            rule = "must be what Tally.to_dict returned"
+            raise InvalidValueError("state", rule, f"{type(error).__name__}: {error}") from None
+
+    @staticmethod
+    def _of(state: dict[str, Any], watch: Watch) -> Tally:
         serial = state["serial"]
         broken = {name: (count, example) for name, (count, example) in state["broken"].items()}
         return Tally(
@@ -146,6 +161,7 @@ class Tally:
             state["given_up"],
             _unpacked(state["calls"]),
             replace(watch, broken=broken, seen=dict(state["seen"])),
+            str(state["check"]),
         )
 
 

@@ -72,7 +72,9 @@ def command(
     """
     scene_file = images[-1] if images[-1].lower().endswith(SCENES) else None
     if folder is not None:
-        take(folder, ("index.html", "results.json", "maps.exr", "maps.npy"), force)
+        from fogproof.images.report import WRITTEN
+
+        take(folder, WRITTEN, force)
     if scene_file is None:
         if not others:
             raise click.UsageError("give a SCENE.toml after the images, or --with IMAGE to compare with")

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import contextlib
-import os
 from pathlib import Path
 
 import click
-
-from fogproof.errors import InvalidInputError
 
 FORCE = click.option("--force", is_flag=True, help="Replace files in the folder that fogproof did not write.")
 """The option; `reports.prepare_folder` is the rule behind it."""
@@ -17,21 +13,12 @@ FORCE = click.option("--force", is_flag=True, help="Replace files in the folder 
 def take(folder: Path, names: tuple[str, ...], force: bool) -> None:
     """Make `folder`, see that files of these names may be written there, and keep it from other commands until this one ends.
 
-    The lock is the folder's own: no file is left, and a process that is killed holds it no more. Systems of files without locks
-    have none.
+    A command that ends before it has written anything leaves no folder behind.
     """
-    from fogproof.reports.files import prepare_folder
+    from fogproof.reports.files import absent, locked, prepare_folder, remove_empty
 
+    context = click.get_current_context()
+    missing = absent(folder)
+    context.call_on_close(lambda: remove_empty(missing))
     prepare_folder(folder, names, force)
-    try:
-        import fcntl
-    except ImportError:  # Windows
-        return
-    with contextlib.suppress(OSError):
-        opened = os.open(folder, os.O_RDONLY)
-        click.get_current_context().call_on_close(lambda: os.close(opened))
-        try:
-            fcntl.flock(opened, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            what = f"another run of fogproof writes into {folder}; wait for its end, or choose another folder"
-            raise InvalidInputError(what, str(folder)) from None
+    context.with_resource(locked(folder))

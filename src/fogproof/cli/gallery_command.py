@@ -34,8 +34,9 @@ def command(pictures: tuple[str, ...], folder: Path, seed: int, force: bool) -> 
     Example:  fogproof gallery -o build/gallery
     """
     from fogproof.reports import write_gallery
+    from fogproof.reports.files import FIGURES
 
-    take(folder, ("gallery.html", "gallery.json"), force)
+    take(folder, ("gallery.html", "gallery.json", *FIGURES), force)
     with interruptible() as stop:
         write_gallery(folder, seed, pictures)
     if (folder / "gallery.html").exists():

@@ -16,7 +16,7 @@ from fogproof.cli.terminal import say
 from fogproof.cli.values import FOLDER, PLACE, PROBABILITY, RELATIVE, SECONDS
 from fogproof.images.judging import ALPHA, TOLERANCE
 from fogproof.images.relation_run import RelationRun, count_relations, run_relations, write_record
-from fogproof.renderers.table import renderer_of
+from fogproof.renderers.table import renderer_of, require_command
 
 
 @click.command("relations")
@@ -84,9 +84,10 @@ def command(
     if integrators and not chosen.takes("integrator"):
         raise click.UsageError("--integrators needs {integrator} in the command")
     run = RelationRun(
-        chosen, ways, samples, renders, seed, tolerance, alpha, python, only, not no_oracle, seconds
+        chosen, ways, samples, renders, seed, tolerance, alpha, python, only, not no_oracle, seconds, force
     )  # fmt: skip
     read_image_scenes(scenes)  # what cannot be read is told before hours of rendering
+    require_command(chosen, python)
     take(folder, ("index.html", "results.json"), force)
     rows: list[dict[str, Any]] = []
     asked = count_relations(scenes, run, folder)

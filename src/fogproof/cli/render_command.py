@@ -14,8 +14,8 @@ from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
 from fogproof.cli.values import FOLDER, PLACE, PROBABILITY, RELATIVE, SECONDS
 from fogproof.images.judging import ALPHA, TOLERANCE
-from fogproof.images.renders import Wanted, render_scenes, write_page
-from fogproof.renderers.table import renderer_of
+from fogproof.images.renders import WRITTEN, Wanted, render_scenes, write_page
+from fogproof.renderers.table import renderer_of, require_command
 
 
 @click.command("render")
@@ -69,11 +69,12 @@ def command(
 
     wanted = Wanted(renderer_of(renderer), samples, seed, tolerance, alpha, python, seconds)
     read_image_scenes(scenes)  # what cannot be read is told before hours of rendering
+    require_command(wanted.renderer, python)
     names = scene_names(scenes)
     take(folder, ("index.html", "results.json"), force)
     for name in names:
         if (folder / name).exists():
-            prepare_folder(folder / name, ("index.html", "results.json", "row.json", "maps.exr", "image.exr"), force)
+            prepare_folder(folder / name, WRITTEN, force)
     rows: list[dict[str, Any]] = []
     width = max(map(len, names))
     with interruptible() as stop:

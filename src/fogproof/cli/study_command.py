@@ -75,7 +75,14 @@ def command(
     take(folder, REPORT, force)
     with interruptible() as stop:
         record = run_study(
-            plan, folder, executor=executor, workers=workers, against=against, salvage=salvage, command=called
+            plan,
+            folder,
+            executor=executor,
+            workers=workers,
+            against=against,
+            salvage=salvage,
+            command=called,
+            tell=lambda words: say(f"fogproof: {words}", err=True),
         )
     if stop.code:
         if not (folder / "results.json").exists():
@@ -168,7 +175,7 @@ def _explain(record: dict[str, Any]) -> None:
         if answer["question"] != asked:
             say(f"\n{one_line(answer['question'])}", err=True)
         asked = answer["question"]
-        say(f"  {one_line(answer['scene'])}: {answer['text']}", err=True)
+        say("\n    ".join([f"  {one_line(answer['scene'])}", *answer["text"].split("\n")]), err=True)
     for scene in record["scenes"]:
         for estimator in scene["estimators"]:
             place = one_line(f"{scene['name']} / {estimator['name']}")

@@ -11,6 +11,7 @@ import numpy as np
 from fogproof.analytic import image
 from fogproof.checks.verdict import Verdict
 from fogproof.contracts import Reference
+from fogproof.images.copies import distinct, require_other_files
 from fogproof.images.judging import ALPHA, TOLERANCE, ImageComparison, checked, judge, ratios
 from fogproof.images.picture import RenderedImage, read_picture
 from fogproof.images.residuals import residuals
@@ -39,6 +40,7 @@ def compare_image(
     correlated  pixels are known to share random numbers: only several renders tell how means scatter
     explain     look for the cause of what is rejected
     """
+    require_other_files(paths)
     picture = read_picture(paths, scene.camera.film, scene.channels, layer, samples)
     return compare_renders(
         picture, scene, reference=reference, tolerance=tolerance, alpha=alpha, correlated=correlated, explain=explain
@@ -63,6 +65,7 @@ def compare_renders(
     value, error = (
         np.broadcast_to(x if x.ndim == 3 else x[..., None], (*x.shape[:2], channels)) for x in truth_of(truth)
     )
+    picture, said = distinct(picture, value)
     found = residuals(picture, value, error, tolerance)
     brightest = (
         float(np.max(scene.background)) if scene.scattering == "none" and not np.any(scene.medium.emission) else 0.0
@@ -86,7 +89,7 @@ def compare_renders(
         {"tolerance": tolerance, "renders": len(picture.renders), "images": list(picture.paths)},
         cause,
         diagnosis=diagnosis,
-        unchecked=tuple(unchecked),
+        unchecked=(*said, *unchecked),
     )
     return ImageComparison(verdict, ratios(found, picture.names), picture, found, how, scene)
 

@@ -9,8 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from fogproof.checks.verdict import Verdict
+from fogproof.checks.verdict import Finding, Verdict
 from fogproof.errors import InvalidValueError
+from fogproof.images.copies import distinct, one_render, require_other_files
 from fogproof.images.judging import ALPHA, TOLERANCE, ImageComparison, checked, judge, ratios
 from fogproof.images.picture import RenderedImage, read_picture
 from fogproof.images.residuals import Residuals
@@ -27,11 +28,18 @@ def compare_pictures(
 ) -> ImageComparison:
     """Compare two images that should show the same, each of one or several independent renders, without an oracle.
 
-    Pixel by pixel their difference has mean 0 and the noise of both (Welch 1947); what both have wrong is not seen.
+    Pixel by pixel their difference has mean 0 and the noise of both (Welch 1947); what both have wrong is not seen. One render that
+    stands on both sides says nothing of either: that is inconclusive.
     """
     tolerance, alpha = checked(tolerance, alpha)
+    require_other_files([*first, *second])
     a, b = read_picture(first, None, None, layer), read_picture(second, None, None, layer)
-    return compare_pair(a, b, tolerance=tolerance, alpha=alpha, correlated=correlated)
+    done = compare_pair(a, b, tolerance=tolerance, alpha=alpha, correlated=correlated)
+    words = one_render(a, b)
+    if not words:
+        return done
+    findings = (Finding("renders", "inconclusive", words), *done.verdict.findings)
+    return replace(done, verdict=replace(done.verdict, findings=findings))
 
 
 def compare_pair(
@@ -39,6 +47,7 @@ def compare_pair(
 ) -> ImageComparison:
     """Compare images that have been read; see `compare_pictures`."""
     started = time.perf_counter()
+    (a, said), (b, more) = distinct(a, 0.0), distinct(b, 0.0)
     if a.renders.shape[1:] != b.renders.shape[1:]:
         sizes = [f"{x.renders.shape[2]} x {x.renders.shape[1]} of {x.renders.shape[3]} channels" for x in (a, b)]
         raise InvalidValueError("images", "must have the same size", sizes)
@@ -58,7 +67,7 @@ def compare_pair(
     rejected = any(finding.outcome == "rejected" for finding in findings)
     verdict = Verdict(
         tuple(findings), alpha, int(good.sum()), 0, time.perf_counter() - started, settings,
-        "different-images" if rejected else "", unchecked=tuple(unchecked),
+        "different-images" if rejected else "", unchecked=(*said, *more, *unchecked),
     )  # fmt: skip
     return ImageComparison(verdict, ratios(found, a.names), a, found, how, None)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import fnmatch
 import hashlib
 import json
@@ -20,7 +21,7 @@ from fogproof.images.scene_names import scene_names
 from fogproof.relations import Comparison, ImageSetting
 from fogproof.renderers.running import RenderFailure, code_of, render_one
 from fogproof.renderers.table import Renderer
-from fogproof.reports.files import write_file
+from fogproof.reports.files import prepare_folder, write_file
 from fogproof.reports.pages.images import write_relations_page
 from fogproof.scene import ImageScene
 from fogproof.scene.files import read_image_scene
@@ -36,6 +37,7 @@ class RelationRun:
     integrators  its ways to render; the first is its usual one
     only         patterns of the names of relations that are wanted; all if empty
     seconds      longest a render may take, or None
+    force        replace renders in the folder that are not ours
     """
 
     renderer: Renderer
@@ -49,6 +51,7 @@ class RelationRun:
     only: tuple[str, ...] = ()
     oracle: bool = True
     seconds: float | None = None
+    force: bool = False
 
 
 def run_relations(scenes: Sequence[Path], run: RelationRun, folder: Path) -> Iterator[dict[str, Any]]:
@@ -128,15 +131,20 @@ class Commands:
             b"\0".join([scene.encode(), *code_of(self.run.renderer, values)]), digest_size=12
         ).hexdigest()
         out, done = self.folder / f"{key}.exr", self.folder / f"{key}.json"
-        kept = next((one for one in (out, out.with_name(f"{out.name}.npy")) if one.exists() and done.exists()), None)
+        images = (out, out.with_name(f"{out.name}.npy"))
+        kept = next((one for one in images if one.exists() and _finished(done)), None)
         if kept is None:
-            source = write_file(self.folder / f"{key}.scene.json", scene)
+            source = self.folder / f"{key}.scene.json"
+            prepare_folder(self.folder, tuple(one.name for one in (*images, done, source)), self.run.force)
+            told = {"format": "fogproof-render-1", "state": "unfinished", **values}
+            write_file(done, json.dumps(told))
+            write_file(source, scene)
             found = render_one(self.run.renderer, source, out, values, self.run.seconds)
             if isinstance(found, RenderFailure):
                 if found.refused:
                     raise UnsupportedError(found.reason, "scene")
                 raise RenderError(found.reason)
-            write_file(done, json.dumps(values))  # only what is whole is taken up again
+            write_file(done, json.dumps(told | {"state": "finished"}))  # only what is whole is taken up again
             kept = found
         picture = read_picture([kept], setting.scene.camera.film, setting.scene.channels)
         return np.asarray(picture.renders[0])
@@ -153,6 +161,14 @@ class Commands:
             "threads": str(setting.threads),
             "integrator": setting.integrator,
         }
+
+
+def _finished(done: Path) -> bool:
+    """Return whether a render's record says that the image beside it is whole."""
+    with contextlib.suppress(OSError, ValueError):
+        told = json.loads(done.read_bytes())
+        return isinstance(told, dict) and told.get("state") == "finished"
+    return False
 
 
 def write_record(

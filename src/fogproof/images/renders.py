@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import time
@@ -12,15 +13,19 @@ from typing import Any
 
 from fogproof.errors import FogproofError
 from fogproof.images.compare import compare_image
+from fogproof.images.report import WRITTEN as COMPARISON
 from fogproof.images.report import write_comparison
 from fogproof.images.scene_names import scene_names
 from fogproof.renderers.running import RenderFailure, code_of, render_one
 from fogproof.renderers.table import Renderer
-from fogproof.reports.files import write_file
+from fogproof.reports.files import locked, write_file
 from fogproof.reports.pages.images import write_renders_page
 from fogproof.scene.files import read_image_scene
 from fogproof.scene.to_json import to_json
 from fogproof.text import state, unfinished
+
+WRITTEN = (*COMPARISON, "row.json", "scene.json", "image.exr", "image.exr.npy")
+"""The files of one scene, in its own folder."""
 
 
 @dataclass(frozen=True)
@@ -50,26 +55,34 @@ def render_scenes(scenes: Sequence[Path], wanted: Wanted, folder: Path) -> Itera
     """Render and compare each scene, and yield its row as soon as it is known; what was done before is taken as it is.
 
     A row says "not rejected", "rejected", "inconclusive", "not rendered" (the renderer has no such thing) or "error", and `kept`
-    if nothing was rendered for it.
+    if nothing was rendered for it. The scenes' folders are kept from other runs to the end.
     """
-    scene_names(scenes)
-    for path in scenes:
-        place = folder / path.stem
-        try:
-            scene = json.dumps(to_json(read_image_scene(path)), indent=1)
-        except FogproofError as error:
-            yield _row(path.stem, "error", str(error))
-            continue
-        key = _key(scene, wanted)
-        row = _before(place, key)
-        if row is None:
-            started = time.perf_counter()
-            row = _render(path, scene, wanted, place)
-            row["seconds"] = f"{time.perf_counter() - started:.1f}"
-            write_file(place / "row.json", json.dumps({"format": "fogproof-row-1", "key": key, "row": row}, indent=1))
-        else:
-            row = {**row, "kept": True}
-        yield row
+    places = [folder / name for name in scene_names(scenes)]
+    with contextlib.ExitStack() as held:
+        for place in (known := {place for place in places if place.exists()}):
+            held.enter_context(locked(place))
+        for path, place in zip(scenes, places, strict=True):
+            try:
+                scene = json.dumps(to_json(read_image_scene(path)), indent=1)
+                if place not in known:
+                    place.mkdir(parents=True, exist_ok=True)
+                    held.enter_context(locked(place))
+            except FogproofError as error:
+                yield _row(path.stem, "error", str(error))
+            else:
+                yield _kept_or_rendered(path, scene, wanted, place)
+
+
+def _kept_or_rendered(path: Path, scene: str, wanted: Wanted, place: Path) -> dict[str, Any]:
+    key = _key(scene, wanted)
+    row = _before(place, key)
+    if row is not None:
+        return {**row, "kept": True}
+    started = time.perf_counter()
+    row = _render(path, scene, wanted, place)
+    row["seconds"] = f"{time.perf_counter() - started:.1f}"
+    write_file(place / "row.json", json.dumps({"format": "fogproof-row-1", "key": key, "row": row}, indent=1))
+    return row
 
 
 def write_page(rows: Sequence[dict[str, Any]], wanted: Wanted, folder: Path, asked: int = 0) -> Path:

@@ -11,13 +11,21 @@ import numpy as np
 from fogproof.errors import NotInstalledError
 from fogproof.images.formats import format_of
 from fogproof.images.judging import ImageComparison
-from fogproof.images.maps import maps, picture_png, z_png
-from fogproof.reports.charts.colours import PAPER
-from fogproof.reports.charts.p_values import PValueHistogram
-from fogproof.reports.charts.sheet import Sheet
-from fogproof.reports.charts.sheet_png import png
-from fogproof.reports.files import write_file
+from fogproof.images.maps import REACH, maps, picture_png, z_png
+from fogproof.reports.charts.p_values import FEWEST, PValueHistogram
+from fogproof.reports.charts.pictures import render
+from fogproof.reports.files import write_file, write_picture
 from fogproof.reports.pages.images import write_image_page
+
+WRITTEN = (
+    "index.html",
+    "results.json",
+    "maps.exr",
+    "maps.npy",
+    *(f"figures/{name}.png" for name in ("image", "reference", "z-map", "p-values")),
+    "figures/p-values.svg",
+)
+"""The files of a comparison."""
 
 WORST = 8
 """Tiles that are listed."""
@@ -60,13 +68,12 @@ def write_comparison(done: ImageComparison, folder: Path) -> Path:
         "reference": picture_png(reference, top),
         "z-map": z_png(found.z),
     }
-    if len(found.p_values) > 1:
-        sheet = Sheet(520, 300, PAPER)
-        told = PValueHistogram(found.p_values).draw(sheet)
-        pictures["p-values"] = png(sheet)
-        record["p_values"] = told
+    p_values = render(PValueHistogram(found.p_values), "p-values") if len(found.p_values) >= FEWEST else None
+    if p_values is not None:
+        p_values.save(folder / "figures")
+        record["p_values"] = p_values.words
     for name, content in pictures.items():
-        write_file(folder / "figures" / f"{name}.png", content)
+        write_picture(folder / "figures" / f"{name}.png", content)
     names = done.picture.names
     layers = {f"z.{name}": found.z[..., c] for c, name in enumerate(names)}
     layers |= {f"ratio.{name}": found.ratio[..., c] for c, name in enumerate(names)}
@@ -76,4 +83,6 @@ def write_comparison(done: ImageComparison, folder: Path) -> Path:
     except NotInstalledError:
         format_of("maps.npy").write(folder / "maps.npy", layers)
     write_file(folder / "results.json", json.dumps(record | {"tiles": list(found.p_values)}, indent=1))
-    return write_image_page(record, pictures, folder)
+    known = done.verdict.resolution if done.verdict.outcome == "not rejected" else None
+    said = str(known) if known else ""
+    return write_image_page(record, pictures, folder, reach=REACH, resolution=said, p_values=p_values)

@@ -14,7 +14,7 @@ from fogproof.checks import Verdict
 from fogproof.checks.diagnosis.causes import likely_cause
 from fogproof.checks.pilot import PILOT
 from fogproof.checks.promises import Watch
-from fogproof.checks.sampler import SamplerCheck
+from fogproof.checks.sampler_parts import SamplerCheck
 from fogproof.checks.subject import Subject
 from fogproof.checks.verdict import Finding
 from fogproof.contracts import Draw

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shlex
+import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -82,6 +83,14 @@ def command_of(renderer: Renderer, values: dict[str, str]) -> list[str]:
             word = word.replace(f"{{{key}}}", value)
         words.append(word)
     return words
+
+
+def require_command(renderer: Renderer, python: str) -> None:
+    """Refuse a command whose program is not there, before anything is rendered."""
+    program = command_of(renderer, {"python": python})[0]
+    if "{" not in program and shutil.which(program) is None:
+        fix = "name a program that can be run, by its path if it is not in PATH"
+        raise InvalidInputError(f"--with {renderer.name}: cannot run {program}: no such command; {fix}", "with")
 
 
 def script_of(name: str, scene: ImageScene) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import datetime
 import json
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +33,7 @@ def run_study(
     against: str | Path | None = None,
     salvage: bool = False,
     command: str = "",
+    tell: Callable[[str], None] = lambda words: None,
 ) -> dict[str, Any]:
     """Draw what is missing of a study in its folder, write `results.json` and `results.csv` there, and return the record.
 
@@ -42,6 +44,7 @@ def run_study(
     against   folder or results.json of an earlier run that this one is compared with
     salvage   whether a damaged store is put aside, and what can be read of it used
     command   how the run was called, for the record
+    tell      told in words what an interrupted run waits for
     """
     folder = Path(folder)
     started, clock = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"), time.perf_counter()
@@ -64,7 +67,7 @@ def run_study(
                 store.begin(started, json.dumps(environment(), sort_keys=True))
                 slots = pool.slots
                 try:
-                    draw_missing(study, cells, batches.in_turn(), store, pool, progress.advance)
+                    draw_missing(study, cells, batches.in_turn(), store, pool, progress.advance, tell=tell)
                 except KeyboardInterrupt as stop:
                     stopped = stop
         run = Circumstances(command, started, time.perf_counter() - clock, executor, slots, stopped is not None)

@@ -9,8 +9,10 @@ from __future__ import annotations
 import contextlib
 import multiprocessing
 import multiprocessing.connection
+import multiprocessing.util
 import os
 import signal
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
@@ -85,10 +87,19 @@ def _as_worker() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     with contextlib.suppress(OSError):
         os.dup2(2, 1)  # what an estimator prints is no part of the study's answer
+    multiprocessing.util.Finalize(None, _end_at_once, exitpriority=1000)  # before anybody is waited for
     parent = multiprocessing.parent_process()
     assert parent is not None
     with contextlib.suppress(RuntimeError):  # where no more threads may be started nothing watches
         threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True).start()
+
+
+def _end_at_once() -> None:
+    """End a worker that has nothing more to do: Python would wait for threads that an estimator has left."""
+    for stream in (sys.stdout, sys.stderr):
+        with contextlib.suppress(OSError, ValueError, AttributeError):
+            stream.flush()
+    os._exit(0)
 
 
 def _end_with(sentinel: int) -> None:

@@ -12,6 +12,7 @@ from fogproof.study.judgement import BY_BIAS
 from fogproof.study.measures import Measured
 from fogproof.study.methods.own import Own
 from fogproof.study.reaching import TARGETS, Reach
+from fogproof.study.soonest import Soonest, reaches, soonest, table
 from fogproof.text import duration
 
 _AT = 0
@@ -20,7 +21,7 @@ _SHOWN = 3
 
 
 def ranked(scene: Sequence[Measured]) -> dict[str, Any]:
-    """Return the ranking of a scene's estimators, the soonest, and some sentences; writes ranks and relative speeds.
+    """Return the ranking of a scene's estimators, who is soonest, and sentences, one a line; writes ranks and relative speeds.
 
     Those that do not reach the first target within their counts follow, the nearest first; last those without a curve. The
     intervals of a scene's relative speeds hold all at once: whoever comes out first, its ratio to any other is one of all pairs'
@@ -28,7 +29,7 @@ def ranked(scene: Sequence[Measured]) -> dict[str, Any]:
     """
     sure = _of_all_pairs(scene)
     order = sorted((m for m in scene if m.reaches), key=_key)
-    reaching = [m for m in order if _reaches(m, _AT)]
+    reaching = [m for m in order if reaches(m, _AT)]
     unbiased = [m for m in reaching if m.unbiased]
     first = reaching[0] if reaching else None
     for m in scene:
@@ -38,12 +39,15 @@ def ranked(scene: Sequence[Measured]) -> dict[str, Any]:
             relative = Estimate(1.0, 1.0, 1.0) if m is first else relative
             speed["rank"] = order.index(m) + 1 if m in reaching else None
             speed["relative"] = None if relative is None else asdict(relative)
+    notes = _notes(scene, sure)
     return {
         "best": None if first is None else first.cell.name,
         "best_unbiased": unbiased[0].cell.name if unbiased else None,
         "ranking": [m.cell.name for m in order],
         "unranked": [m.cell.name for m in scene if not m.reaches],
-        "text": " ".join(_sentences(scene, sure)),
+        "soonest": table(scene, sure),
+        "notes": notes,
+        "text": "\n".join(_to_the_errors(scene, sure) + notes),
     }
 
 
@@ -53,17 +57,25 @@ def _of_all_pairs(scene: Sequence[Measured]) -> float:
     return 1 - (1 - CONFIDENCE) / max(1, n * (n - 1) // 2)
 
 
-def _reaches(m: Measured, target: int) -> bool:
-    return bool(m.reaches) and m.reaches[target].reached
-
-
 def _key(m: Measured) -> tuple[int, float]:
-    if _reaches(m, _AT):
+    if reaches(m, _AT):
         return 0, m.reaches[_AT].times.estimate.value
     return 1, m.record["counts"][-1]["rmse"]
 
 
-def _sentences(scene: Sequence[Measured], sure: float) -> list[str]:
+def _to_the_errors(scene: Sequence[Measured], sure: float) -> list[str]:
+    """Return the sentences that say who is soonest, of all and of the unbiased."""
+    found = [one for one in soonest(scene, sure) if one is not None]
+    biased = list(dict.fromkeys(one.first for one in found if not one.first.unbiased))
+    said = _soonest(soonest(scene, sure), "")
+    if biased:
+        said += [f"{_first(m)} {_why_not_unbiased(m)}." for m in biased]
+        said += _soonest(soonest([m for m in scene if m.unbiased], sure), "Of the unbiased, ")
+    return said
+
+
+def _notes(scene: Sequence[Measured], sure: float) -> list[str]:
+    """Return the sentences that say more than who is soonest."""
     if not any(m.reaches for m in scene):
         zero = all(float(m.cell.reference.value) == 0 for m in scene)
         return [
@@ -71,24 +83,21 @@ def _sentences(scene: Sequence[Measured], sure: float) -> list[str]:
             if zero
             else "Nothing has been measured that could be compared."
         ]
-    said = _soonest(scene, "", sure)
-    firsts = [m for m in _firsts(scene, sure) if m is not None]
+    said = []
+    firsts = [one.first for one in soonest(scene, sure) if one is not None]
     if not firsts:
         nearest = min((m for m in scene if m.reaches), key=_key)
         last = nearest.record["counts"][-1]
         said = [
             f"None comes within {TARGETS[_AT]:.0%}; {_inside(nearest)} comes nearest with {last['count']}. Raise `samples`."
         ]
-    biased = list(dict.fromkeys(m for m in firsts if not m.unbiased))
-    if biased:
-        said += [f"{_first(m)} {_why_not_unbiased(m)}." for m in biased]
-        said += _soonest([m for m in scene if m.unbiased], "Of the unbiased, ", sure)
     said += _compared(scene, sure)
     said += [_marched(m) for m in scene if m.cell.method.axis == "steps" and m.record["counts"]]
     untimed = [_inside(m) for m in scene if m.reaches and m.reaches[_AT].untimed]
     if untimed:
         more = "what more samples would take these counts do not tell: add a larger one to `samples`"
         said.append(f"Of {_listed(untimed)} {more}.")
+    biased = [m for m in firsts if not m.unbiased]
     open_ = [_inside(m) for m in scene if m.status == "inconclusive" and m.cell.points == "random" and m not in biased]
     if open_:
         said.append(f"Not judged unbiased yet: {_listed(open_)}.")
@@ -98,35 +107,19 @@ def _sentences(scene: Sequence[Measured], sure: float) -> list[str]:
     return said
 
 
-def _firsts(scene: Sequence[Measured], sure: float) -> list[Measured | None]:
-    """Return who is soonest to each of `TARGETS`: the same as to the one before, unless another is shown to be sooner."""
-    found: list[Measured | None] = []
-    before: Measured | None = None
-    for target in range(len(TARGETS)):
-        there = [m for m in scene if _reaches(m, target)]
-        first = min(there, key=lambda m: m.reaches[target].times.estimate.value, default=None)
-        if first is not None and before is not None and _reaches(before, target):
-            ratio = before.reaches[target].relative_to(first.reaches[target], sure)
-            first = before if ratio is None or not ratio.low > 1 else first
-        found.append(first)
-        before = first
-    return found
-
-
-def _soonest(scene: Sequence[Measured], lead: str, sure: float) -> list[str]:
+def _soonest(found: Sequence[Soonest | None], lead: str) -> list[str]:
     """Return who is soonest to each error, in what time, and who is not to be told from it; and where the counts do not tell."""
-    parts, untold = [], []
+    parts: list[str] = []
+    untold: list[tuple[int, tuple[Measured, ...]]] = []
     before = None
-    firsts = [(first, _beside(scene, first, target, sure)) for target, first in enumerate(_firsts(scene, sure))]
-    for (first, beside), group in groupby(zip(firsts, range(len(TARGETS)), strict=True), key=lambda pair: pair[0]):
-        if first is None:
-            continue
+    there = [(one, target) for target, one in enumerate(found) if one is not None]
+    for (first, beside), group in groupby(there, key=lambda pair: (pair[0].first, pair[0].beside)):
         told: dict[str, list[str]] = {}
-        for _, target in group:
-            if waiting := _may_be_sooner(scene, first, target):
-                untold.append((target, waiting))
+        for one, target in group:
+            if one.waiting:
+                untold.append((target, one.waiting))
             else:
-                told.setdefault(_time(first.reaches[target]), []).append(_percent(TARGETS[target]))
+                told.setdefault(_time(one.reach), []).append(_percent(TARGETS[target]))
         if told:
             again = first is before
             place = f"{'' if again else 'first, though '}not to be told from {_some(beside)}" if beside else "soonest"
@@ -143,23 +136,6 @@ def _soonest(scene: Sequence[Measured], lead: str, sure: float) -> list[str]:
     return said
 
 
-def _beside(scene: Sequence[Measured], first: Measured | None, target: int, sure: float) -> list[Measured]:
-    """Return those that come to an error in a time that may be the first's as well."""
-    if first is None:
-        return []
-    there = [
-        (m, m.reaches[target].relative_to(first.reaches[target], sure)) for m in scene if m.reaches and m is not first
-    ]
-    return [m for m, ratio in there if ratio is not None and not ratio.low > 1]
-
-
-def _may_be_sooner(scene: Sequence[Measured], first: Measured, target: int) -> list[Measured]:
-    """Return those that had not come so near by their last count, which took less time than the first needs."""
-    least = first.reaches[target].times.estimate.value
-    waiting = [m for m in scene if m.reaches and m.reaches[target].how == "not-reached"]
-    return [m for m in waiting if m.reaches[target].times.estimate.value < least]
-
-
 def _why_not_unbiased(m: Measured) -> str:
     if m.status == "known":
         return "is biased by construction"
@@ -168,7 +144,7 @@ def _why_not_unbiased(m: Measured) -> str:
 
 def _compared(scene: Sequence[Measured], sure: float) -> list[str]:
     """Return how many times as long others take that came out unbiased, to the first target."""
-    there = sorted((m for m in scene if m.unbiased and _reaches(m, _AT)), key=_key)
+    there = sorted((m for m in scene if m.unbiased and reaches(m, _AT)), key=_key)
     if len(there) < 2:
         return []
     first, *others = there
@@ -179,7 +155,9 @@ def _compared(scene: Sequence[Measured], sure: float) -> list[str]:
             most = first.reaches[_AT].how == "less-than"
             times = f"at least {_plain(ratio.low)}" if most else _plain(ratio.value)
             said.append(f"{times} times as fast as {_inside(other)}")
-    return [f"To {_percent(TARGETS[_AT])} {_inside(first)} is {_listed(said[:_SHOWN])}."] if said else []
+    more = len(said) - _SHOWN
+    shown = said if more <= 1 else [*said[:_SHOWN], f"more than that of {more} others"]
+    return [f"To {_percent(TARGETS[_AT])} {_inside(first)} is {_listed(shown)}."] if said else []
 
 
 def _marched(m: Measured) -> str:

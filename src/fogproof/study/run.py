@@ -17,6 +17,8 @@ from fogproof.study.stored_batches import Store
 
 ATTEMPTS = 3
 """A batch that has failed so often is given up for this run, and reported; so is a cell that did in so many batches."""
+PATIENCE = 1.0
+"""Seconds after an interrupt, from which on somebody is told what is waited for."""
 AHEAD = 2
 """Batches a worker has waiting, beside the one it draws."""
 
@@ -54,6 +56,7 @@ def draw_missing(
     pool: Workers,
     advance: Advance = lambda batch, result: None,
     draw: DrawBatch = run_batch,
+    tell: Callable[[str], None] = lambda words: None,
 ) -> None:
     """Draw every batch that is not in the store yet, in the order given.
 
@@ -61,6 +64,7 @@ def draw_missing(
 
     advance  told of each batch, with its result or None if it was given up
     draw     what a worker calls
+    tell     told in words what an interrupt waits for
     """
     done = store.done()
     work = _Work(deque(batch for batch in batches if batch.number not in done))
@@ -75,7 +79,7 @@ def draw_missing(
             ready, _ = concurrent.futures.wait(work.running, return_when=concurrent.futures.FIRST_COMPLETED)
             _collect(ready, work, store, pool, advance)
     except KeyboardInterrupt:
-        _keep_what_is_under_way(work, store)
+        _keep_what_is_under_way(work, store, tell)
         raise
 
 
@@ -134,9 +138,15 @@ def _again(batch: Batch, error: str, work: _Work, store: Store, advance: Advance
     return True
 
 
-def _keep_what_is_under_way(work: _Work, store: Store) -> None:
+def _keep_what_is_under_way(work: _Work, store: Store, tell: Callable[[str], None]) -> None:
     """Store the batches that were being drawn; those that only waited are drawn another time."""
     under_way = [future for future in work.running if not future.cancel()]
+    _, late = concurrent.futures.wait(under_way, PATIENCE)
+    if late:
+        which = "the batch that is" if len(late) == 1 else f"{len(late)} batches that are"
+        tell(
+            f"stopping: waiting for {which} under way, to keep what is drawn; a second signal ends at once, without that"
+        )
     finished, _ = concurrent.futures.wait(under_way)
     results = [future.result() for future in finished if not future.cancelled() and future.exception() is None]
     store.add(results)

@@ -26,8 +26,11 @@ _PER_LEAF = 16  # pilot points in a cell of the known law
 _ANYWHERE = 0.2  # share of the known law that is the domain's own
 _BACKGROUND = 1e-4  # of the known law is added to every density: one stray point refutes none
 _CELLS = 256
+_WAVES = 4  # along each axis
+_MOST_AXES = 6  # along which there are waves
 _PER_CELL = 64  # points in a cell, at least
 _ROUNDED = 1 << 12  # pilot points at which the effect of rounding is looked at
+_BEGUN = 512  # points that tell where to begin
 _THIN = 16  # every so manyth point tells the constant well enough to begin with
 
 
@@ -94,10 +97,16 @@ class Contrast:
 
     def part(self, n: int) -> Contrast:
         """Return the contrast of the first n samples and as many evenly chosen known points."""
-        if n >= len(self.x):
+        kept = self.kept(n)
+        if kept is None:
             return self
-        keep = np.concatenate([np.arange(n), len(self.x) + np.linspace(0, len(self.z) - 1, n).astype(int)])
-        return Contrast(self.law, self.tree, self.x[:n], self.z[keep[n:] - len(self.x)], self.q[keep], self.cell[keep])
+        return Contrast(self.law, self.tree, self.x[:n], self.z[kept[n:] - len(self.x)], self.q[kept], self.cell[kept])
+
+    def kept(self, n: int) -> np.ndarray | None:
+        """Return which of all points (2 n,) such a part has, None if it is the whole."""
+        if n >= len(self.x):
+            return None
+        return np.concatenate([np.arange(n), len(self.x) + np.linspace(0, len(self.z) - 1, n).astype(int)])
 
     def likelihood(self, s: np.ndarray) -> float:
         """Return the logarithm of the likelihood of the labels under a density with values s (n + m,), samples first."""
@@ -119,21 +128,27 @@ class Contrast:
         """Return the odds (n + m,) of each point to be a sample under a density with values s."""
         return self._explained(s)[2]
 
-    def waves(self, most: int, axes: int) -> np.ndarray:
-        """Return 1 and cosines (n + m, k) of up to so many half waves along each of the first axes, at all points."""
-        k = min(len(self.law.axes), axes)
+    @cached_property
+    def waves(self) -> np.ndarray:
+        """Return 1 and cosines (n + m, k) of up to four half waves along each of the first axes, at all points.
+
+        By Chebyshev's recurrence, cos (k + 1) t = 2 cos t cos k t - cos (k - 1) t.
+        """
+        k = min(len(self.law.axes), _MOST_AXES)
         u = self.law.coordinates(self.points, np.full((len(self.points), len(self.law.axes)), 0.5))[:, :k]
-        angles = np.pi * u[:, :, None] * np.arange(1, most + 1)
-        return np.concatenate([np.ones((len(u), 1)), np.cos(angles).reshape(len(u), -1)], axis=1)
+        waves = np.ones((_WAVES + 1, k, len(u)))
+        waves[1] = np.cos(np.pi * u.T)
+        for order in range(2, _WAVES + 1):
+            waves[order] = 2 * waves[1] * waves[order - 1] - waves[order - 2]
+        return np.concatenate([waves[0, :1], *waves[1:]]).T
 
     def _explained(self, s: np.ndarray) -> tuple[float, float, np.ndarray]:
         """Return the likelihood of a density, the logarithm of its best constant, and the odds of each point to be a sample."""
         n = len(self.x)
         ratio = np.where((s > 0) & np.isfinite(s), s, 0.0) / self.q  # a mixture of less than nothing gains nothing
         few = ratio[np.r_[0:n:_THIN, n : len(ratio) : _THIN]]
-        usual = (
-            -float(np.log(np.median(few[few > 0]))) if (few > 0).any() else 0.0
-        )  # Newton's method begins within reach
+        some = few[few > 0][:: max(len(few) // _BEGUN, 1)]
+        usual = -float(np.log(np.median(some))) if len(some) else 0.0  # Newton's method begins within reach
         start, settled = _best_constant(few, -(-n // _THIN), usual)
         log_c, _ = _best_constant(ratio, n, start if settled else usual)
         odds = np.exp(log_c) * ratio + _BACKGROUND

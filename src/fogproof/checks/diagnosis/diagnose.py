@@ -13,6 +13,7 @@ from fogproof.checks.diagnosis.contrast import Contrast, Fit
 from fogproof.checks.diagnosis.explaining import PLAIN, SIZES, contrasted, explained_by, explanation, setting_of
 from fogproof.checks.diagnosis.factors import named_factor
 from fogproof.checks.diagnosis.fitting import likeliest
+from fogproof.checks.diagnosis.hypothesis import Setting
 from fogproof.checks.diagnosis.patience import OutOfTimeError, limited
 from fogproof.checks.diagnosis.points import few_values, single_points
 from fogproof.checks.diagnosis.together import dependent
@@ -36,6 +37,7 @@ _SYMPTOMS = {
     "wrong formula",
     "edge of the uniforms",
 }  # that a wrong law brings along
+_COARSE = "coarse numbers"  # as values that come again seem
 _MOSTLY = 0.5  # of the samples at single points: a law without them is not what went wrong
 _RIGHT = 0.8  # of a misfit that a place beyond the samples explains
 _MISFIT = 4.0  # standard deviations of a chi-square that is no chance
@@ -58,7 +60,7 @@ def diagnosed(
     statistical = any(f.p_value is not None and f.cause in _STATISTICAL for f in rejected)
     if cause == "negative pdf":
         return cause, _exponential(subject, samples, seed)
-    if cause in {"atom"} | _CONSTANT | _STATISTICAL or (cause in _SYMPTOMS | _ZERO | _SHARES and statistical):
+    if cause in {"atom", _COARSE} | _CONSTANT | _STATISTICAL or (cause in _SYMPTOMS | _ZERO | _SHARES and statistical):
         try:
             with np.errstate(all="ignore"):
                 named, words = _explained(subject, cause, findings, samples, seed)
@@ -78,12 +80,14 @@ def _explained(subject: Subject, cause: str, findings: Sequence[Finding], sample
     """Return the cause and the words; what accounts for a share of the samples does not explain a law that is wrong beside it."""
     named, words, rest = ("", "", subject) if cause in _CONSTANT else single_points(subject, samples, seed)
     often = 0.0 if all(whole_columns(subject.domain)) else sum(rest.atoms.values()) - sum(subject.atoms.values())
-    if named == "atom" and often > _MOSTLY:
+    if named == "clamped" or (named == "atom" and often > _MOSTLY):  # with what lies beyond: all of its misfit
         return named, words
-    if named != "clamped" and cause != "atom" and cause not in _SHARES:
+    if named == "sheet" and (told := _beside_a_sheet(rest, words, samples, seed)):
+        return told
+    if cause == _COARSE:
+        return cause, ""
+    if cause != "atom" and cause not in _SHARES:
         return _searched(subject, cause, findings, samples, seed)
-    if named == "clamped":  # with what lies beyond: all of its misfit
-        return named, words
     own = cause if cause in _SHARES else named or cause
     shown = contrasted(rest, samples, seed)
     if shown is None or shown[1].left < _MISFIT * math.sqrt(2 * shown[1].freedom):
@@ -97,6 +101,14 @@ def _explained(subject: Subject, cause: str, findings: Sequence[Finding], sample
         return own, ""
     why = why or "the law is another one between single points too"
     return other, f"{why}; besides, {words}" if words else why
+
+
+def _beside_a_sheet(rest: Subject, words: str, samples: int, seed: int) -> tuple[str, str] | None:
+    """Return that one coordinate is a constant too often, if the other samples fit the claim; None if they do not."""
+    shown = contrasted(rest, samples, seed)
+    if shown is None or shown[1].left > _MISFIT * math.sqrt(2 * shown[1].freedom):
+        return None
+    return "atom", f"{words}; the other samples fit the pdf"
 
 
 def _searched(
@@ -122,17 +134,19 @@ def _searched(
     if shown is None:
         return cause, ""
     setting, base = shown
-    if cause in _CONSTANT and not base.left > _MISFIT * math.sqrt(2 * base.freedom):
+    fits = not base.left > _MISFIT * math.sqrt(2 * base.freedom)
+    if cause in _CONSTANT and fits:
         return cause, _factor(base)
     by_labels = any(f.check == "normalisation" and f.resolution is None for f in findings)
-    if cause == "shape" and by_labels and base.left < _MISFIT * math.sqrt(2 * base.freedom) and _factor(base):
+    crowded = by_labels and fits and bool(_factor(base)) and not _integrates_to(setting, base)
+    if cause == "shape" and by_labels and fits and _factor(base) and not crowded:
         return "normalisation", _factor(base)
     found = explanation(subject, setting, base, samples, seed)
     if found is not None and not (cause in _ZERO and found[0] in _ANYTHING):
         return found
     if (
         isinstance(subject.domain, Product)
-        and base.left > _MISFIT * math.sqrt(2 * base.freedom)
+        and (not fits or crowded)
         and (told := dependent(subject, subject.domain, samples, seed))
     ):
         return "correlation", told
@@ -175,6 +189,16 @@ def _factor(base: Fit) -> str:
     return f"{words}, that is {name}" if name else words
 
 
+def _integrates_to(setting: Setting, base: Fit) -> bool:
+    """Return whether the pdf has the integral, told by the known points alone, that the constant factor of a fit asks for.
+
+    Samples that lie closer together than cells can tell, on a curve, seem to ask for a factor too.
+    """
+    ratio = setting.values[len(setting.contrast.x) :] / setting.contrast.q[len(setting.contrast.x) :]
+    error = float(ratio.std()) / math.sqrt(len(ratio))
+    return abs(float(ratio.mean()) * base.constant - 1) < _CHANCE * math.hypot(error * base.constant, base.doubt)
+
+
 def _exponential(subject: Subject, samples: int, seed: int) -> str:
     """Return in words that a pdf is the logarithm of one, if its exponential integrates to 1; "" if it does not."""
     try:
@@ -199,7 +223,7 @@ def _constant(subject: Subject, integral: Finding, cause: str, samples: int, see
     setting = setting_of(subject, samples, seed)
     if setting is None or integral.effect is None:
         return cause, ""
-    base = setting.contrast.fit(setting.p(setting.contrast.points))
+    base = setting.contrast.fit(setting.values)
     if base.left > _MISFIT * math.sqrt(2 * base.freedom):
         found = likeliest(setting, base, list(holes.hypotheses(setting))[:-1])
         if found and explained_by(setting, found[0])[1] > _RIGHT and abs(found[0].fit.constant - 1) < 0.1:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
@@ -9,20 +10,33 @@ from itertools import permutations
 
 import numpy as np
 
-from fogproof.checks.diagnosis import grids, lobes
+from fogproof.checks.diagnosis import frames, grids, lobes, planes
 from fogproof.checks.diagnosis.contrast import Density
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting, known_number, of_points
 
 _MIRROR = np.array([1.0, 1.0, -1.0])
 _ALONG = 0.03  # from a coordinate axis: such a lobe is meant to be about it
-_PER_CELL = 8  # samples in a cell, seen and expected, that tell a density
 _UNIT_LENGTH = 0.3  # relative error of a direction that cells tell
 _OUTER, _STEPS = 512, 2000  # samples that may bound a cone, and steps towards its axis
+_FAMILY = math.log(20)  # how much likelier a law is off by its own parameter
 _LEAN = 0.03  # mean length of directions that have a direction
 
 
 def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
-    """Yield what may have happened to directions, the simplest first."""
+    """Yield what may have happened to directions, the simplest first.
+
+    Where the claim is a law that everybody uses, its own parameter is likelier off than anything else that takes one.
+    """
+    laws = list(lobes.hypotheses(setting))
+    known = any(law.null is not None for law in laws)
+    yield from _simple()
+    for each in (*_of_places(setting), *_powers(setting), *(() if known else lobes.powers(setting))):
+        yield replace(each, prior=-_FAMILY) if known and each.trials else each
+    yield from laws
+    yield from grids.of_directions(setting)
+
+
+def _simple() -> Iterator[Hypothesis]:
     yield Hypothesis("uniform law", "these samples are uniform", lambda s, _: _everywhere)
     yield Hypothesis(
         "sign convention", "these samples fit the pdf of the opposite direction", lambda s, _: lambda x: s.p(-x)
@@ -40,21 +54,14 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
             names = "".join("xyz"[i] for i in order)
             words = f"these samples fit the pdf with its axes (x, y, z) taken for ({', '.join(names)})"
             yield Hypothesis("swapped axes", words, of_points(partial(np.take, indices=order, axis=1)))
+
+
+def _of_places(setting: Setting) -> Iterator[Hypothesis]:
     yield from _sines(setting)
     yield from _about_the_mean(setting)
-    yield from _flat(setting)
+    yield from planes.hypotheses(setting)
     yield from _half_vectors(setting)
-    yield from _frames(setting)
-    yield from lobes.hypotheses(setting)
-    yield from _powers(setting)
-    yield Hypothesis(
-        "another parameter",
-        "these samples fit the pdf raised to the power {value}, as of a broader or a narrower lobe",
-        lambda s, a: lambda x: np.maximum(s.p(x), 0.0) ** a,
-        (0.3, 0.6, 0.8, 0.95, 1.05, 1.25, 1.7, 3.0),
-        null=1.0,
-    )
-    yield from grids.of_directions(setting)
+    yield from frames.hypotheses(setting)
 
 
 def _sines(setting: Setting) -> Iterator[Hypothesis]:
@@ -66,18 +73,20 @@ def _sines(setting: Setting) -> Iterator[Hypothesis]:
 
 
 def _powers(setting: Setting) -> Iterator[Hypothesis]:
+    plane = planes.within(setting, np.array([0.0, 0.0, 1.0]))
     yield Hypothesis(
-        "wrong power",
+        "missing Jacobian" if plane else "wrong power",
         "these samples fit the pdf times a power of the cosine, {value}",
         lambda s, a: lambda x: s.p(x) * np.abs(x[:, 2]) ** a,
         (-1.5, -1.0, -0.5, 0.5, 1.0, 2.0, 3.0),
         known_number(
             {
-                -1.0: "a cosine is missing: uniform where the pdf is cosine-weighted",
+                -1.0: "a cosine is missing" + ": uniform where the pdf is cosine-weighted" * (not plane),
                 2.0: "two cosines too many",
                 1.0: "a cosine too many",
             }
         ),
+        otherwise="wrong power",
         null=0.0,
     )
     yield Hypothesis(
@@ -105,7 +114,7 @@ def _about_the_mean(setting: Setting) -> Iterator[Hypothesis]:
     if length < _LEAN or np.linalg.norm(np.cross(mean, (0, 0, 1))) < _ALONG * length:
         return
     axis = mean / length
-    frame = _turn(axis, np.array([0.0, 0.0, 1.0]))
+    frame = frames.turn(axis, np.array([0.0, 0.0, 1.0]))
     name = " about (" + ", ".join(f"{c:.3f}" for c in axis) + ")"
     known = [
         (setting, _turned(setting, frame))
@@ -126,9 +135,7 @@ def _turned(setting: Setting, frame: np.ndarray) -> Setting:
     """Return what hypotheses may look at in another frame, of orthonormal rows (3, 3)."""
     contrast = setting.contrast
     turned = replace(contrast, x=contrast.x @ frame.T, z=contrast.z @ frame.T)
-    other = replace(setting, claim=lambda y: setting.p(y @ frame), contrast=turned)
-    other.__dict__["_at_points"] = setting.p(contrast.points)
-    return other
+    return replace(setting, claim=lambda y: setting.p(y @ frame), contrast=turned)
 
 
 def _cone(setting: Setting) -> Iterator[Hypothesis]:
@@ -151,42 +158,13 @@ def _cone(setting: Setting) -> Iterator[Hypothesis]:
     yield Hypothesis("missing tail", words, lambda s, _: lambda x: s.p(x) * (x @ axis >= least))
 
 
-def _flat(setting: Setting) -> Iterator[Hypothesis]:
-    """Yield that points of a cube, or of one plane, are normalised as if that kept areas.
-
-    Seen from its origin, a plane's area of unit distance and normal n fills the solid angle (x . n)^3. The normal is not known: in
-    cells, samples over what the claim expects, to the power -1/3, are a linear function of x, of which it is the gradient.
-    """
-    x = setting.contrast.x
-    told = _cells(setting)
-    if len(np.unique(3 * (x.max(axis=1) == np.abs(x).max(axis=1)) + np.abs(x).argmax(axis=1))) > 3:
-        yield Hypothesis(
-            "normalised cube",
-            "these samples are points of a cube, normalised without rejection",
-            lambda s, _: lambda x: s.p(x) / np.abs(x).max(axis=1) ** 3,
-        )
-    if told is None:
-        return
-    places, ratio = told
-    gradient = np.linalg.lstsq(places, ratio ** (-1 / 3), rcond=None)[0]
-    normal = gradient / max(float(np.linalg.norm(gradient)), 1e-300)
-    if np.any(x @ normal <= 0):
-        return
-    to = ", ".join(f"{c:.3f}" for c in normal)
-    words = f"these samples are even on the area of a plane of normal ({to}) where the pdf means solid angle"
-    words += ": the cosine over the squared distance is missing"
-    yield Hypothesis(
-        "missing Jacobian", words, lambda s, _: lambda x: s.p(x) / np.maximum(x @ normal, 1e-9) ** 3, fitted=2
-    )
-
-
 def _half_vectors(setting: Setting) -> Iterator[Hypothesis]:
     """Yield that directions reflected at a sampled half vector have the half vector's density.
 
     With h the half of wo and x, dh/dx = 1 / (4 h . wo), and 2 h . wo = |wo + x| (Walter et al. 2007, eq. 14). Where wo is unknown,
     in cells, samples over what the claim expects, to the power -2, are proportional to 1 + x . wo.
     """
-    told = _cells(setting)
+    told = planes.ratios(setting)
     if told is None:
         return
     places, ratio = told
@@ -200,23 +178,6 @@ def _half_vectors(setting: Setting) -> Iterator[Hypothesis]:
     yield Hypothesis(
         "missing Jacobian", words, lambda s, _: lambda x: s.p(x) / np.sqrt(np.maximum(1 + x @ wo, 1e-9)), fitted=2
     )
-
-
-def _cells(setting: Setting) -> tuple[np.ndarray, np.ndarray] | None:
-    """Return where cells are, (m, 3), and how many samples they have over what the claim expects, (m,); None of too few cells."""
-    contrast = setting.contrast
-    n, cells = len(contrast.x), int(contrast.cell.max()) + 1
-    weight = setting.p(contrast.points)[n:] / contrast.q[n:]
-    seen = np.bincount(contrast.cell[:n], minlength=cells)
-    expected = np.bincount(contrast.cell[n:], weight, cells) * n / max(float(weight.sum()), 1e-300)
-    full = (seen >= _PER_CELL) & (expected >= _PER_CELL)
-    if np.count_nonzero(full) < 2 * _PER_CELL:
-        return None
-    middle = np.stack(
-        [np.bincount(contrast.cell[n:], weight * contrast.z[:, axis], cells) for axis in range(3)], axis=1
-    )
-    places = middle[full] / np.bincount(contrast.cell[n:], weight, cells)[full, None]
-    return places, seen[full] / expected[full]
 
 
 def _everywhere(x: np.ndarray) -> np.ndarray:
@@ -243,29 +204,3 @@ def _cosine_to(power: float) -> Callable[[np.ndarray], np.ndarray]:
         return np.stack([x[:, 0] * scale, x[:, 1] * scale, mu], axis=-1)
 
     return back
-
-
-def _frames(setting: Setting) -> Iterator[Hypothesis]:
-    """Yield the turn that takes the mean direction of the claim to that of the samples, if both have one."""
-    claim, samples = setting.claimed_mean(), setting.contrast.x.mean(axis=0)
-    lengths = float(np.linalg.norm(claim)), float(np.linalg.norm(samples))
-    if min(lengths) < _LEAN:
-        return
-    a, b = claim / lengths[0], samples / lengths[1]
-    back = _turn(b, a)
-    degrees = float(np.degrees(np.arctan2(np.linalg.norm(np.cross(a, b)), a @ b)))
-    lean = ", ".join(f"{c:.3f}" for c in b)
-    words = f"these samples fit the pdf in another frame: turned by {degrees:.3g} degrees, towards ({lean})"
-    yield Hypothesis("rotated frame", words, lambda s, _: lambda x: s.p(x @ back.T), fitted=2)
-
-
-def _turn(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Return the rotation that takes the unit vector a to b the shortest way (Rodrigues)."""
-    axis, cosine = np.cross(a, b), float(a @ b)
-    if cosine < -1 + 1e-9:
-        other = np.eye(3)[int(np.argmin(np.abs(a)))]
-        axis = np.cross(a, other)
-        axis /= np.linalg.norm(axis)
-        return 2 * np.outer(axis, axis) - np.eye(3)
-    cross = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
-    return np.eye(3) + cross + cross @ cross / (1 + cosine)

@@ -5,17 +5,28 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
+from itertools import chain
 
 import numpy as np
 
-from fogproof.checks.diagnosis import directions, holes, lines, numbers, parts, regions, turns
+from fogproof.checks.diagnosis import directions, holes, lines, numbers, parts, regions, triangles, turns
 from fogproof.checks.diagnosis.contrast import Contrast, Fit, claimed
 from fogproof.checks.diagnosis.fitting import TIE, Explained, judged, likeliest, nearest, sharpened
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting
 from fogproof.checks.diagnosis.shape import unexplained
 from fogproof.checks.streams import batch_generator
 from fogproof.checks.subject import Subject
-from fogproof.domains import Discrete, HalfLine, Interval, Product, RealLine, Rotations, UnitHemisphere, UnitSphere
+from fogproof.domains import (
+    Discrete,
+    HalfLine,
+    Interval,
+    Product,
+    RealLine,
+    Rotations,
+    Triangle,
+    UnitHemisphere,
+    UnitSphere,
+)
 
 SIZES = (1 << 14, 1 << 16, 1 << 18)  # samples: as few as show the misfit plainly
 PLAIN = 1000.0  # chi-square that is plain
@@ -43,11 +54,7 @@ def explanation(subject: Subject, setting: Setting, base: Fit, samples: int, see
     best = found[0]
     gain, share = explained_by(many, best)
     needed = _FITS if best.hypothesis.cause == "another law" else _EXPLAINS
-    if (
-        gain < _STANDS_OUT
-        or share < needed
-        or gain < unexplained(many.contrast, many.p(many.contrast.points)) + _CLEARLY
-    ):
+    if gain < _STANDS_OUT or share < needed or gain < unexplained(many.contrast, many.values) + _CLEARLY:
         return None
     near = [each for each in found[1:] if each.cause != best.cause and each.score > best.score - _CLEARLY]
     told = f"{best.words} (this explains {share:.0%} of the misfit)"
@@ -62,7 +69,7 @@ def explanation(subject: Subject, setting: Setting, base: Fit, samples: int, see
 
 def explained_by(setting: Setting, found: Explained) -> tuple[float, float]:
     """Return the log-likelihood that a hypothesis gains over the claim, and which share that is of what could be gained."""
-    gain = found.score - setting.contrast.likelihood(setting.p(setting.contrast.points))
+    gain = found.score - setting.contrast.likelihood(setting.values)
     left = unexplained(setting.contrast, found.density(setting))
     return gain, gain / (gain + left) if gain > 0 else 0.0
 
@@ -75,11 +82,7 @@ def _candidates(
         # a small smooth misfit hides among many cells, and stands out against the hypothesis that it is
         many = setting if samples <= SIZES[-1] else setting_of(subject, min(_SMALL, samples), seed)
         found = nearest(setting, many, [*of_domain(setting), *holes.hypotheses(setting)]) if many else []
-        if (
-            many
-            and found
-            and found[0].fit.likelihood - many.contrast.likelihood(many.p(many.contrast.points)) > _STANDS_OUT
-        ):
+        if many and found and found[0].fit.likelihood - many.contrast.likelihood(many.values) > _STANDS_OUT:
             return many, found
     found = likeliest(setting, base, [*of_domain(setting), *holes.hypotheses(setting)])
     found = [each for each in found if each.score > found[0].score - _CLOSE]
@@ -100,7 +103,7 @@ def _candidates(
 def setting_of(subject: Subject, n: int, seed: int) -> Setting | None:
     """Return what hypotheses may look at, with about n samples; None if too few of them are points of the continuous part."""
     contrast = Contrast.of(subject, n, batch_generator(seed, "diagnosis", 0, n))
-    return None if contrast is None else Setting(subject.domain, contrast.law, claimed(subject), contrast)
+    return None if contrast is None else Setting.of(subject.domain, claimed(subject), contrast)
 
 
 def contrasted(subject: Subject, samples: int, seed: int) -> tuple[Setting, Fit] | None:
@@ -111,7 +114,7 @@ def contrasted(subject: Subject, samples: int, seed: int) -> tuple[Setting, Fit]
         setting = setting_of(subject, min(n, max(samples, least)), seed)
         if setting is None:
             return None
-        base = setting.contrast.fit(setting.p(setting.contrast.points))
+        base = setting.contrast.fit(setting.values)
         if base.left > PLAIN or n >= samples:
             break
     return None if setting is None else (setting, base)
@@ -128,6 +131,8 @@ def of_domain(setting: Setting) -> Iterator[Hypothesis]:
             return numbers.hypotheses(setting)
         case Rotations():
             return turns.hypotheses(setting)
+        case Triangle() as triangle:
+            return chain(triangles.hypotheses(triangle), regions.hypotheses(setting))
         case Product() as product:
             return parts.hypotheses(setting, product, of_domain)
     if setting.domain.shape == (3,) and np.allclose(np.sum(setting.contrast.x[:99] ** 2, axis=1), 1):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -55,10 +55,8 @@ class Explained:
 def likeliest(setting: Setting, base: Fit, hypotheses: list[Hypothesis]) -> list[Explained]:
     """Return hypotheses of the greatest likelihood, parameters paid for by Schwarz's criterion; earlier ones win ties."""
     n = len(setting.contrast.x)
-    small = replace(setting, contrast=setting.contrast.part(_SCREENED))
-    middle = replace(
-        setting, contrast=setting.contrast.part(min(max(int(_TELLING * n / max(base.left, 1.0)), _SCREENED), _MOST))
-    )
+    small = setting.part(_SCREENED)
+    middle = setting.part(min(max(int(_TELLING * n / max(base.left, 1.0)), _SCREENED), _MOST))
     tried = []
     for order, hypothesis in enumerate(hypotheses):
         doing(f"looking for the cause: is it that {hypothesis.words.replace('{value}', '...')}?")
@@ -127,7 +125,7 @@ def nearest(middle: Setting, setting: Setting, hypotheses: list[Hypothesis]) -> 
 
 
 def _null_likelihood(setting: Setting) -> float:
-    return setting.contrast.likelihood(setting.p(setting.contrast.points))
+    return setting.contrast.likelihood(setting.values)
 
 
 def _parabola(

@@ -49,7 +49,7 @@ def _hole(setting: Setting, axis: int) -> tuple[float, float] | None:
     samples = np.concatenate([[0.0], np.sort(_coordinate(setting, contrast.x, axis)), [1.0]])
     known = _coordinate(setting, contrast.z, axis)
     n = len(contrast.x)
-    weight = setting.p(contrast.points)[n:] / contrast.q[n:]
+    weight = setting.values[n:] / contrast.q[n:]
     order = np.argsort(known)
     share = np.cumsum(weight[order])
     if not share[-1] > 0:
@@ -95,7 +95,7 @@ def _empty_cells(setting: Setting) -> Iterator[Hypothesis]:
     contrast = setting.contrast
     n, cells = len(contrast.x), int(contrast.cell.max()) + 1
     seen = np.bincount(contrast.cell[:n], minlength=cells)
-    weight = setting.p(contrast.points)[n:] / contrast.q[n:]
+    weight = setting.values[n:] / contrast.q[n:]
     expected = np.bincount(contrast.cell[n:], weight, cells) * n / max(float(weight.sum()), 1e-300)
     empty = (seen < _EMPTY * expected) & (expected > _TELLING)
     if not empty.any() or empty.all():

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from functools import cached_property
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -20,31 +19,41 @@ _STEP = 1e-5  # of the way to the nearer end of an axis
 
 @dataclass(frozen=True)
 class Setting:
-    """What hypotheses may look at: the domain, its known law, the claimed density p, samples x and points z of density q."""
+    """What hypotheses may look at: the domain, its known law, the claimed density p, samples x and points z of density q.
+
+    values  claimed density (n + m,) at all points of the contrast, where nearly every hypothesis asks for it
+    """
 
     domain: Domain
     law: Law
     claim: Density
     contrast: Contrast
+    values: np.ndarray
+
+    @staticmethod
+    def of(domain: Domain, claim: Density, contrast: Contrast) -> Setting:
+        """Return the setting of a claimed density, which is evaluated at all points of the contrast."""
+        return Setting(domain, contrast.law, claim, contrast, claim(contrast.points))
 
     def p(self, x: np.ndarray) -> np.ndarray:
-        """Return the claimed density; at all points of the contrast, where nearly every hypothesis asks, it is known."""
-        return self._at_points if x is self.contrast.points else self.claim(x)
+        """Return the claimed density; at all points of the contrast it is known."""
+        return self.values if x is self.contrast.points else self.claim(x)
 
-    @cached_property
-    def _at_points(self) -> np.ndarray:
-        return self.claim(self.contrast.points)
+    def part(self, n: int) -> Setting:
+        """Return what hypotheses may look at of the first n samples and as many known points."""
+        kept = self.contrast.kept(n)
+        return self if kept is None else replace(self, contrast=self.contrast.part(n), values=self.values[kept])
 
     def claimed_mean(self) -> np.ndarray:
         """Return the mean of the points under the claimed density."""
         z, n = self.contrast.z, len(self.contrast.x)
-        weight = self._at_points[n:] / self.contrast.q[n:]
+        weight = self.values[n:] / self.contrast.q[n:]
         return np.tensordot(weight, z, axes=1) / max(float(weight.sum()), 1e-300)
 
     def claimed_points(self, most: int) -> np.ndarray:
         """Return points where the claim has its probability, (most, ...): what they tell of it holds beyond where samples are."""
         n = len(self.contrast.x)
-        share = np.cumsum(np.maximum(self._at_points[n:], 0.0) / self.contrast.q[n:])
+        share = np.cumsum(np.maximum(self.values[n:], 0.0) / self.contrast.q[n:])
         at = np.searchsorted(share, share[-1] * (np.arange(most) + 0.5) / most)
         return self.contrast.z[np.minimum(at, len(share) - 1)]
 
@@ -88,6 +97,7 @@ class Hypothesis:
     fitted   how many parameters were taken from the samples beforehand
     named    parameter -> what it is better known as, "" if it is nothing special
     null     the parameter with which it is the claim itself, None if there is none
+    prior    logarithm of how much likelier it is than others before any sample is seen
     otherwise  the class of error where the parameter is no whole or half number, `cause` unless given
     """
 
@@ -97,6 +107,7 @@ class Hypothesis:
     trials: tuple[float, ...] = ()
     named: Callable[[float, float], str] = field(default=lambda value, error: "")
     fitted: int = 0
+    prior: float = 0.0
     otherwise: str = ""
     null: float | None = None
 
@@ -107,8 +118,8 @@ class Hypothesis:
         return self.otherwise if self.otherwise and not simple else self.cause
 
     def price(self, n: int) -> float:
-        """Return what the parameters cost on n samples, in log-likelihood (Schwarz 1978)."""
-        return 0.5 * math.log(n) * (bool(self.trials) + self.fitted)
+        """Return what the parameters cost on n samples, in log-likelihood (Schwarz 1978), less what was known before."""
+        return 0.5 * math.log(n) * (bool(self.trials) + self.fitted) - self.prior
 
     def said(self, value: float, error: float) -> str:
         """Return the explanation with the fitted parameter and its standard error."""

@@ -175,13 +175,14 @@ def _raised(x: np.ndarray, power: float) -> np.ndarray:
 
 def _of_another_deviation(setting: Setting) -> Iterator[Hypothesis]:
     """Yield that the samples are spread otherwise about where the claim is."""
-    contrast = setting.contrast
-    weight = setting.p(contrast.points)[len(contrast.x) :] / contrast.q[len(contrast.x) :]
-    order = np.argsort(contrast.z)
-    share = np.cumsum(weight[order])
+    n = len(setting.contrast.x)
+    order = np.argsort(setting.contrast.z)
+    z, law = setting.contrast.z[order], setting.law
+    u, ratio = law.coordinates(z, np.full((len(z), 1), 0.5))[:, 0], setting.values[n:][order] / law.density(z)
+    share = np.concatenate([[0.0], np.cumsum(0.5 * (ratio[1:] + ratio[:-1]) * np.diff(u))])  # closer than by chance
     if not (np.isfinite(share[-1]) and share[-1] > 0):
         return
-    low, middle, high = np.interp((0.158655, 0.5, 0.841345), share / share[-1], contrast.z[order]).tolist()
+    low, middle, high = np.interp((0.158655, 0.5, 0.841345), share / share[-1], z).tolist()
     deviation = 0.5 * (high - low)
     if not deviation > 0:
         return

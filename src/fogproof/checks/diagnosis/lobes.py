@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -11,8 +12,13 @@ from fogproof.checks.diagnosis.contrast import Density
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting
 
 _ALONG = 0.03  # from a coordinate axis: such a lobe is meant to be about it
+_CHANCE = 5.0  # standard errors of a mean direction
 _LINEAR = 1e-6  # share of the variance of a logarithm that a line leaves
 _CONSTANT = 0.02  # deviation of the logarithm of a ratio of two lobes that are one
+_TOP, _EDGE = 0.9, 0.02  # share of a claim that lies below its top, and beyond its skirts
+_SKIRTS = 0.1  # of the greatest density of a lobe
+_TOGETHER = 0.5  # mean length of the directions at the top of a lobe
+_FALLS = 0.7  # rank correlation of a lobe's density with the cosine to its top
 _LEAN = 0.03  # mean length of directions that have a direction
 
 
@@ -21,7 +27,10 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
     mean = setting.claimed_mean()
     length = float(np.linalg.norm(mean))
     axis = mean / length if length > _LEAN else np.array([0.0, 0.0, 1.0])
-    axis = np.rint(axis) if np.linalg.norm(axis - np.rint(axis)) < _ALONG else axis
+    off = float(np.linalg.norm(axis - np.rint(axis)))
+    chance = _CHANCE / (length * math.sqrt(len(setting.contrast.x))) if length > _LEAN else 0.0
+    if off < _ALONG or (off < chance and _known(setting, np.rint(axis))):
+        axis = np.rint(axis)
     own = f"; the pdf's mean cosine is {length:.4g}" if length > _LEAN else ""
 
     def about(f: Callable[[np.ndarray, float], np.ndarray], null: float | None) -> Callable[[Setting, float], Density]:
@@ -49,6 +58,38 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
     yield Hypothesis(
         "another law", "these samples fit Rayleigh's phase function", about(lambda mu, _: 1 + mu * mu, None)
     )
+
+
+def powers(setting: Setting) -> Iterator[Hypothesis]:
+    """Yield that a lobe of any law is broader or narrower: a power of the cosine, or an exponential, stays one."""
+    if _lobe(setting):
+        yield Hypothesis(
+            "another parameter",
+            "these samples fit the pdf raised to the power {value}, as of a broader or a narrower lobe",
+            lambda s, a: lambda x: np.maximum(s.p(x), 0.0) ** a,
+            (0.3, 0.6, 0.8, 0.95, 1.05, 1.25, 1.7, 3.0),
+            null=1.0,
+        )
+
+
+def _known(setting: Setting, axis: np.ndarray) -> bool:
+    """Return whether the claim is a phase function that everybody uses, about an axis."""
+    laws = henyey_greenstein, schlick
+    return _kappa(setting, axis) is not None or any(_own(setting, axis, f) is not None for f in laws)
+
+
+def _lobe(setting: Setting) -> bool:
+    """Return whether the claim falls from one direction on, down to little where it ends: a lobe, and no lit piece of a plane."""
+    x = setting.claimed_points(512)
+    p, n = setting.p(x), len(setting.contrast.x)
+    ends = bool(np.any(setting.values[n:] <= 0))
+    if ends and np.quantile(p, _EDGE) > _SKIRTS * p.max():
+        return False
+    top = x[p >= np.quantile(p, _TOP)].mean(axis=0)
+    if np.linalg.norm(top) < _TOGETHER:
+        return False
+    rank, place = (np.argsort(np.argsort(v)) for v in (p, x @ top))
+    return bool(np.corrcoef(rank, place)[0, 1] > _FALLS)
 
 
 def _fisher(mu: np.ndarray, kappa: float | np.ndarray) -> np.ndarray:

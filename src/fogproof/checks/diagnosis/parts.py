@@ -55,7 +55,7 @@ def _exchanged(order: np.ndarray, column: int, setting: Setting, _: float) -> De
     """Return the density with the entries of one column exchanged, where each keeps its probability, told by the known points."""
     contrast = setting.contrast
     n = len(contrast.x)
-    weight = np.maximum(setting.p(contrast.points)[n:], 0.0) / contrast.q[n:]
+    weight = np.maximum(setting.values[n:], 0.0) / contrast.q[n:]
     share = np.bincount(_entries(contrast.z, column, order), weight, len(order))
 
     def density(x: np.ndarray) -> np.ndarray:
@@ -94,6 +94,4 @@ def _part(setting: Setting, part: Domain, columns: slice | int) -> Setting:
         return setting.p(moved)
 
     contrast = replace(whole, law=law, x=whole.x[:, columns], z=whole.z[:, columns])
-    alone = Setting(part, law, claim, contrast)
-    alone.__dict__["_at_points"] = setting.p(whole.points)
-    return alone
+    return Setting(part, law, claim, contrast, setting.values)

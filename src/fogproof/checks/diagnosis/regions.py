@@ -14,6 +14,8 @@ from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting, known_numb
 from fogproof.checks.diagnosis.lines import SCALES, STRETCHED
 
 _HALF_TURN = 0.01  # radians that chance leaves of it
+_EVEN = 1e-9  # relative difference of densities that are one
+_ANYWHERE = 6.0  # logarithm of how much likelier a lost sign empties a half plane that begins at no axis
 _ENDLESS = 1e300  # between the ends of an unbounded axis as its known law has them
 _MOST_SWAPPED = 4  # dimensions
 
@@ -69,11 +71,17 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
 
 
 def _folded(setting: Setting, center: np.ndarray) -> Iterator[Hypothesis]:
-    """Yield that half of the plane is empty and its points are at their mirror images, as of a radius without its sign."""
+    """Yield that half of the plane is empty and its points are at their mirror images, as of a radius without its sign.
+
+    A claim that is its own mirror image has the same points where an azimuth takes half a turn. That one begins at an axis.
+    """
     phi = np.sort(np.arctan2(*(setting.contrast.x - center).T[::-1]))
     gaps = np.diff(phi, append=phi[0] + 2 * np.pi)
     at = int(np.argmax(gaps))
     if abs(gaps[at] - np.pi) > _HALF_TURN:
+        return
+    even = np.allclose(setting.values, setting.p(2 * center - setting.contrast.points), rtol=_EVEN)
+    if even and abs(np.sin(phi[at])) < _HALF_TURN:
         return
     middle = phi[at] + 0.5 * gaps[at] + np.pi
     towards = np.array([np.cos(middle), np.sin(middle)])
@@ -85,7 +93,8 @@ def _folded(setting: Setting, center: np.ndarray) -> Iterator[Hypothesis]:
         kept = y @ towards >= reach * np.sqrt(np.sum(y * y, axis=1))
         return np.where(kept, p(x) + p(center - y), 0.0)
 
-    yield Hypothesis("lost sign", words, lambda s, _: lambda x: density(x, s.p))
+    prior = _ANYWHERE if even else 0.0
+    yield Hypothesis("lost sign", words, lambda s, _: lambda x: density(x, s.p), prior=prior)
 
 
 def _corners(setting: Setting) -> np.ndarray | None:

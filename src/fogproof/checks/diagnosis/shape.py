@@ -10,8 +10,6 @@ from fogproof.checks.diagnosis.contrast import Contrast
 
 _CELLS = (16, 64, 256)
 _LEVELS = 16  # of the odds that a point is a sample
-_WAVES = 4  # along each axis
-_MOST_AXES = 6
 _RIDGE = 1e-9
 _MOST = 3.0  # logarithm of a factor that a wave is trusted with
 
@@ -36,7 +34,7 @@ def unexplained(contrast: Contrast, s: np.ndarray) -> float:
         seen = np.bincount(group[:n], minlength=len(all_of))
         factor = np.log((seen + 1) / (expected + 1)) - np.log((all_of - seen + 1) / (all_of - expected + 1))
         most = max(most, contrast.likelihood(s * np.exp(factor)[group]) - at - price * len(factor))
-    waves, variance = contrast.waves(_WAVES, _MOST_AXES), w * (1 - w)
+    waves, variance = contrast.waves, w * (1 - w)
     score, information = waves[:n].sum(axis=0) - waves.T @ w, waves.T @ (waves * variance[:, None])
     information += _RIDGE * np.trace(information) * np.eye(len(score))
     factor = np.clip(waves @ np.linalg.solve(information, score), -_MOST, _MOST)

@@ -19,6 +19,7 @@ HIDDEN = 0.5
 EXPLAINED = "; rounding explains any difference there could be: nothing can be told"
 """What is said where single precision leaves nothing to see."""
 BLURRED = 0.1  # standard deviations of a count: an expectation known less well makes a test inconclusive
+_ENDLESS = 1e300  # ends beyond are those of numbers, not of a domain: nobody wants to read them
 EXACT = 0.01  # standard deviations: an expectation known better leaves p-values uniform
 
 
@@ -31,7 +32,8 @@ def below(marginal: Marginal, edge: int) -> str:
 def between(marginal: Marginal, first: int, last: int) -> str:
     """Return in words which part of the axis lies between two edges."""
     low, high = sorted((marginal.shown[first], marginal.shown[last]))
-    return f"{low:.6g} < {marginal.label} < {high:.6g}"
+    least, most = f"{low:.6g} < " if low > -_ENDLESS else "", f" < {high:.6g}" if high < _ENDLESS else ""
+    return f"{least}{marginal.label}{most}"
 
 
 def unevenness(cells: int) -> str:
@@ -45,7 +47,10 @@ def drowned(n: float, mass: np.ndarray, blur: np.ndarray) -> bool:
 
 
 def blocks(values: np.ndarray, size: int) -> np.ndarray:
-    """Return the sums of square blocks of (n, n) values, (size, size)."""
+    """Return the sums of square blocks of (n, n) values, (size, size); neighbours are added while that halves their number."""
+    while len(values) >= 2 * size and len(values) % (2 * size) == 0:
+        values = values[::2] + values[1::2]
+        values = values[:, ::2] + values[:, 1::2]
     if len(values) == size:
         return values
     step = len(values) // size

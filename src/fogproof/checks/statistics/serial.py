@@ -59,18 +59,21 @@ class Successions:
         """Return the sums of one batch; d holds the scores (n,) of each axis, in units, see `in_units`.
 
         first  whether it is one of the first batches, in which all lags are looked at
+
+        In double precision sums of up to 2^23 products are exact, and three times as fast as those of integers.
         """
-        d = [*d, *(2 * np.abs(one) - int(_UNIT / 2) for one in d)]
+        d = [*d, *(2 * np.abs(one) - _UNIT / 2 for one in d)]
         n, k = len(d[0]), len(d)
-        sums = np.array([one.sum() for one in d])
-        squares = np.array([np.einsum("i,i->", one, one) for one in d])
-        following = np.array([[np.einsum("i,i->", one[:-1], other[1:]) for other in d] for one in d])
+        sums = np.array([one.sum() for one in d]).astype(np.int64)
+        squares = np.array([one @ one for one in d]).astype(np.int64)
+        following = np.array([[one[:-1] @ other[1:] for other in d] for one in d]).astype(np.int64)
         counts = np.array([n, max(n - 1, 0)])
         whole = n - n % LAGS if first else 0
-        c = [(one[:whole] >> _BITS).astype(np.float32) for one in d]
+        c = [_fewer_bits(one[:whole]) for one in d]
         many = np.concatenate([[whole], np.maximum(whole - np.arange(1, LAGS + 1), 0), [n // 2 if first else 0]])
         products = [np.rint(float(one @ one)) for one in c]
-        half = [[np.rint(float(one @ other)) for other in _halves(d, 1, first)] for one in _halves(d, 0, first)]
+        early, late = _halves(d, 0, first), _halves(d, 1, first)
+        half = [[np.rint(float(one @ other)) for other in late] for one in early]
         return Successions(
             sums,
             squares,
@@ -92,7 +95,7 @@ def _halves(d: list[np.ndarray], second: int, first: bool) -> list[np.ndarray]:
     """Return the coarse scores of the first or the second half of a call, whatever its size; none but of the first batches."""
     half = len(d[0]) // 2 if first else 0
     begin = second * (len(d[0]) - half)
-    return [(one[begin : begin + half] >> _BITS).astype(np.float32) for one in d]
+    return [_fewer_bits(one[begin : begin + half]) for one in d]
 
 
 def _lagged(c: list[np.ndarray]) -> np.ndarray:
@@ -114,7 +117,12 @@ def _lagged(c: list[np.ndarray]) -> np.ndarray:
 
 def in_units(scores: np.ndarray) -> np.ndarray:
     """Return scores on (0, 1) less 1/2, in whole units."""
-    return np.rint((scores - 0.5) * _UNIT).astype(np.int64)
+    return np.rint((scores - 0.5) * _UNIT)
+
+
+def _fewer_bits(scores: np.ndarray) -> np.ndarray:
+    """Return scores in units larger by 2^9, rounded down, in single precision."""
+    return np.floor(scores * 2.0**-_BITS).astype(np.float32)
 
 
 def serial_test(name: str, sums: Successions | None, alpha: float) -> Finding:

@@ -1,0 +1,95 @@
+"""Frames about a normal: turned, or built by a formula with a slip, so that its axes are not orthogonal.
+
+The frame of Duff et al. (2017) takes s, the sign of z, in five places; where z > 0 each of them is without effect.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+
+import numpy as np
+
+from fogproof.checks.diagnosis.contrast import Density
+from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting
+
+_LEAN = 0.03  # mean length of directions that have a direction
+_LEAST = 1e-6  # determinant of three axes that span space
+_SLIPS = {
+    "in 1/(s + z)": (0,),
+    "in the first axis": (1, 2, 3),
+    "in the first axis' x": (1,),
+    "in the first axis' y": (2,),
+    "in the first axis' z": (3,),
+    "in the second axis": (4,),
+}
+
+
+def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
+    """Yield what may have happened to the frame about the mean direction of the claim, if it has one."""
+    yield from _turned(setting)
+    yield from _skewed(setting)
+
+
+def _skewed(setting: Setting) -> Iterator[Hypothesis]:
+    """Yield that directions of a frame that is not orthogonal are normalised: such a map has a determinant."""
+    mean = setting.claimed_mean()
+    length = float(np.linalg.norm(mean))
+    if length < _LEAN or mean[2] >= 0:
+        return
+    normal = mean / length
+    right = duff(normal)
+    for where, places in _SLIPS.items():
+        wrong = duff(normal, places)
+        if abs(np.linalg.det(wrong)) < _LEAST:
+            continue
+        words = f"these samples fit the pdf in a frame that is not orthogonal: its sign of z < 0 is missing {where}"
+        back = np.linalg.inv(wrong) @ right
+        yield Hypothesis(
+            "skewed frame", f"{words} (Duff et al. 2017)", partial(_through, back, float(np.linalg.det(back))), fitted=2
+        )
+
+
+def _through(back: np.ndarray, determinant: float, setting: Setting, _: float) -> Density:
+    """Return the density of directions x whose images under x -> x `back`, normalised, have the claimed one."""
+
+    def density(x: np.ndarray) -> np.ndarray:
+        y = x @ back
+        length = np.sqrt(np.sum(y * y, axis=1))
+        return setting.p(y / length[:, None]) * abs(determinant) / length**3
+
+    return density
+
+
+def duff(normal: np.ndarray, without: tuple[int, ...] = ()) -> np.ndarray:
+    """Return the axes, rows of (3, 3), of the frame of Duff et al. (2017) about a normal, its sign left out in some places."""
+    x, y, z = normal.tolist()
+    s = [1.0 if place in without else float(np.copysign(1.0, z)) for place in range(5)]
+    a = -1 / (s[0] + z)
+    return np.array([[1 + s[1] * x * x * a, s[2] * x * y * a, -s[3] * x], [x * y * a, s[4] + y * y * a, -y], [x, y, z]])
+
+
+def _turned(setting: Setting) -> Iterator[Hypothesis]:
+    """Yield the turn that takes the mean direction of the claim to that of the samples, if both have one."""
+    claim, samples = setting.claimed_mean(), setting.contrast.x.mean(axis=0)
+    lengths = float(np.linalg.norm(claim)), float(np.linalg.norm(samples))
+    if min(lengths) < _LEAN:
+        return
+    a, b = claim / lengths[0], samples / lengths[1]
+    back = turn(b, a)
+    degrees = float(np.degrees(np.arctan2(np.linalg.norm(np.cross(a, b)), a @ b)))
+    lean = ", ".join(f"{c:.3f}" for c in b)
+    words = f"these samples fit the pdf in another frame: turned by {degrees:.3g} degrees, towards ({lean})"
+    yield Hypothesis("rotated frame", words, lambda s, _: lambda x: s.p(x @ back.T), fitted=2)
+
+
+def turn(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Return the rotation that takes the unit vector a to b the shortest way (Rodrigues)."""
+    axis, cosine = np.cross(a, b), float(a @ b)
+    if cosine < -1 + 1e-9:
+        other = np.eye(3)[int(np.argmin(np.abs(a)))]
+        axis = np.cross(a, other)
+        axis /= np.linalg.norm(axis)
+        return 2 * np.outer(axis, axis) - np.eye(3)
+    cross = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
+    return np.eye(3) + cross + cross @ cross / (1 + cosine)

@@ -1,0 +1,134 @@
+"""What a page writes replaces nothing that others wrote, shares its folder with no other run, and leaves nothing if it fails."""
+
+import fcntl
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fuzz_commands import Run, here
+
+from fogproof.errors import InvalidInputError
+from fogproof.reports.charts.p_values import PValueHistogram
+from fogproof.reports.charts.pictures import render
+from fogproof.reports.files import FIGURES, prepare_folder
+
+ROOT = Path(__file__).resolve().parents[2]
+SUN = (ROOT / "scenes" / "images" / "sun.toml").read_text().replace("width = 48, height = 36", "width = 4, height = 4")
+COPY = "sh -c 'cp image.npy $1.npy' sh {out} {scene}"
+
+
+@pytest.fixture
+def at(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    rng = np.random.default_rng(7)
+    for name in ("image", "other"):
+        np.save(f"{name}.npy", rng.random((4, 4), np.float32))
+    Path("sun.toml").write_text(SUN)
+    return tmp_path
+
+
+def theirs(*names):
+    for name in names:
+        Path(name).parent.mkdir(parents=True, exist_ok=True)
+        Path(name).write_bytes(b"somebody's")
+
+
+COMPARE = ["compare", "image.npy", "--with", "other.npy", "--report", "out"]
+GALLERY = ["gallery", "phase-polar", "-o", "out"]
+VERIFY = ["verify", "fog/analog/haze", "--report", "out"]
+
+
+@pytest.mark.parametrize(
+    ("words", "name"),
+    [
+        (COMPARE, "figures/image.png"),
+        (COMPARE, "maps.exr"),
+        (GALLERY, "figures/phase-polar.png"),
+        (GALLERY, "figures/phase-polar.svg"),
+        (VERIFY, "figures/p-values.png"),
+        (["render", "sun.toml", "--with", COPY, "-o", "out"], "sun/figures/image.png"),
+        (["render", "sun.toml", "--with", COPY, "-o", "out"], "sun/scene.json"),
+        (["render", "sun.toml", "--with", COPY, "-o", "out"], "sun/image.exr.npy"),
+    ],
+)
+def test_pictures_of_others_are_not_replaced(at, words, name):
+    theirs(f"out/{name}")
+    end = here(Run(words))
+    assert (end.code, f"out/{name} was not written by fogproof".encode() in end.err) == (2, True), end.err
+    assert Path("out", name).read_bytes() == b"somebody's"
+    assert [path.name for path in Path("out").rglob("*") if path.is_file()] == [Path(name).name]
+
+
+def test_pictures_of_our_own_are_replaced_and_those_of_others_by_force(at):
+    for words in (COMPARE, GALLERY, VERIFY):
+        folder = Path(words[0])
+        words = [*words[:-1], words[0]]
+        assert here(Run(words)).code in (0, 3)
+        assert here(Run(words)).code in (0, 3)
+        picture = next(folder.glob(FIGURES[0]))
+        picture.write_bytes(b"somebody's")
+        assert here(Run(words)).code == 2
+        assert here(Run([*words, "--force"])).code in (0, 3)
+        assert picture.read_bytes()[:4] == b"\x89PNG"
+
+
+def test_a_picture_with_its_mark_is_the_same_picture(at):
+    from PIL import Image
+
+    picture = render(PValueHistogram((0.1, 0.5, 0.7)), "p")
+    picture.save(at)
+    prepare_folder(at, ("*.png", "*.svg"))
+    Path("plain.png").write_bytes(picture.png)
+    with Image.open("p.png") as marked, Image.open("plain.png") as plain:
+        assert marked.tobytes() == plain.tobytes()
+    with pytest.raises(InvalidInputError, match=r"plain\.png was not written by fogproof"):
+        prepare_folder(at, ("*.png", "*.svg"))
+
+
+def test_renders_of_relations_replace_nothing(at):
+    words = ["relations", "sun.toml", "--with", COPY, "-o", "out", "--no-oracle", "--only", "moved/*", "--renders", "1"]
+    assert here(Run(words)).code in (0, 1, 3)
+    renders = sorted(Path("out/sun/renders").iterdir())
+    for path in renders:
+        path.write_bytes(b"somebody's")
+    for path in (*Path("out").rglob("*.html"), Path("out/results.json")):
+        path.unlink()
+    end = here(Run(words))
+    assert (end.code, b"was not written by fogproof" in end.err) == (2, True), end.err
+    assert {path.read_bytes() for path in renders} == {b"somebody's"}
+    assert here(Run([*words, "--force"])).code in (0, 1, 3)
+
+
+def test_the_folder_of_a_scene_belongs_to_the_run_that_renders_it(at):
+    Path("out/sun").mkdir(parents=True)
+    inside = os.open("out/sun", os.O_RDONLY)
+    fcntl.flock(inside, fcntl.LOCK_EX)  # as `compare --report out/sun` does
+    end = here(Run(["render", "sun.toml", "--with", COPY, "-o", "out"]))
+    os.close(inside)
+    assert (end.code, b"another run of fogproof writes into out/sun" in end.err) == (2, True), end.err
+    try_it = "import os, fcntl; fcntl.flock(os.open('out/sun', os.O_RDONLY), fcntl.LOCK_EX | fcntl.LOCK_NB)"
+    busy = f"sh -c 'python3 -c \"{try_it}\" || cp image.npy $1.npy' sh {{out}} {{scene}}"
+    for _ in ("it is there", "it is not there yet"):
+        assert here(Run(["render", "sun.toml", "--with", busy, "-o", "out", "--json"])).code in (0, 1, 3)
+        assert Path("out/sun/image.exr.npy").exists()
+        for path in sorted(Path("out").rglob("*"), reverse=True):
+            path.unlink() if path.is_file() else path.rmdir()
+
+
+def test_what_fails_before_it_writes_leaves_no_folder(at):
+    Path("bad.npy").write_bytes(b"no image")
+    Path("image-2.npy").write_bytes(Path("image.npy").read_bytes())
+    for words in (
+        ["compare", "image.npy", "--with", "bad.npy", "--report", "new/one"],
+        ["compare", "image.npy", "--with", "image.npy", "--report", "new/one"],
+        ["gallery", "no-such-picture", "-o", "new/one"],
+        ["zoo", "no-such-bug", "-o", "new/one"],
+        ["relations", "sun.toml", "--with", COPY, "-o", "new/one", "--only", "no-such-relation"],
+        ["study", "sun.toml", "-o", "new/one"],
+        ["golden", "phase_pdf", "-o", f"new/one/{'x' * 300}"],
+        ["export", "sun.toml", "--to", "json", "-o", f"new/one/{'x' * 300}"],
+    ):
+        end = here(Run(words))
+        assert end.code == 2, (words, end.err)
+        assert not Path("new").exists(), words
