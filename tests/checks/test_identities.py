@@ -164,3 +164,17 @@ def test_a_strategy_may_draw_from_a_generator():
     assert check_mis([uniform, linear], lambda x: np.full((len(x), 2), 0.5)).outcome == "rejected"
     with pytest.raises(InvalidValueError, match=r"strategies\[1\]\.dimensions must be a whole number"):
         check_mis([uniform, (linear.sample, linear.pdf, 0.5)], lambda x: x)
+
+
+def test_the_resolution_of_weights_is_kept():
+    """Wrong where as many points lie as is stated, found as often."""
+    right = check_mis([UNIFORM, LINEAR], BALANCE, samples=2000)
+    assert right.resolution.kind.startswith("share of points with wrong")
+    end = 0.5 * (np.sqrt(1 + 8 * right.resolution.value) - 1)  # (x + x^2) / 2 of both strategies' points lie below x
+    found = [
+        check_mis(
+            [UNIFORM, LINEAR], lambda x: np.where(x < end, 0.9, 1.0)[:, None] * BALANCE(x), samples=2000, seed=seed
+        )
+        for seed in range(20)
+    ]
+    assert sum(verdict.outcome == "rejected" for verdict in found) >= 17

@@ -1,5 +1,7 @@
 """Whole programs: more samples never make an estimate worse, and neighbouring random streams know nothing of each other."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -131,3 +133,31 @@ def test_p_values_of_right_streams_are_not_too_small():
         total += len(p_values)
         small += sum(p <= 0.01 for p in p_values)
     assert small <= 0.01 * total + 6 * np.sqrt(0.01 * total), f"{small} of {total}"
+
+
+def test_streams_state_what_they_would_have_found():
+    """Planted at the size that is stated: neighbours that are correlated so much, and numbers that are so uneven."""
+    n, k = 64, 400
+    right = check_streams(lambda i: np.random.default_rng([5, i]), k, numbers=n)
+    stated = {f.check: f.resolution for f in right.findings if f.resolution is not None}
+    assert len(stated) == 1 + 8 + 6, "every test that has a p-value"
+    assert right.resolution is stated["all numbers"]
+    size, uneven = stated["neighbours, 0 apart"].value, stated["all numbers"].value
+    copied = 0.5 - math.sqrt(0.25 - size)  # c (1 - c) is the correlation
+    found = {"neighbours, 0 apart": 0, "all numbers": 0}
+    for seed in range(6):
+
+        def alike(i, seed=seed):
+            """Each number is its neighbour's with a small probability."""
+            own, before = (np.random.default_rng([seed, i + 1 - back]).random(n) for back in (0, 1))
+            return lambda m: np.where(np.random.default_rng([seed, i, 1]).random(n) < copied, before, own)
+
+        def heavier(i, seed=seed):
+            """The lower half has more numbers, the upper one less."""
+            u = np.random.default_rng([seed, i]).random(n)
+            return lambda m: np.where(u < 0.5 + uneven / 2, u / (1 + uneven), 1 - (1 - u) / (1 - uneven))
+
+        for name, streams in zip(found, (alike, heavier), strict=True):
+            verdict = check_streams(streams, k, numbers=n)
+            found[name] += next(f for f in verdict.findings if f.check == name).outcome == "rejected"
+    assert min(found.values()) >= 5, "each with probability 0.99"

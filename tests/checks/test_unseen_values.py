@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fogproof import Draws, check_convergence, check_estimator
+from fogproof import Draws, check_convergence, check_estimator, compare_estimators, samples_for
 from fogproof.checks.statistics.known import Known
 from fogproof.checks.statistics.means import mean_test
 from fogproof.checks.statistics.moments import Moments
@@ -164,3 +164,51 @@ def test_standard_errors_of_few_values_have_the_coverage_of_their_law(name, k):
     said = next(f.message for f in verdict.findings if f.check.startswith("coverage"))
     if k < 7 and name != "exponential":  # elsewhere kurtosis hides how many they are
         assert "of so few values their law decides" in said
+
+
+def spread(factor):
+    return lambda rng, n: 0.5 + factor * (rng.random(n) - 0.5)
+
+
+def of_variance(verdict):
+    return next(f for f in verdict.findings if f.check == "variance")
+
+
+def test_what_is_said_of_a_variance_is_said_of_the_side_it_is_true_of():
+    """Without bounds rare values may hold what a variance lacks: found is an excess alone. Within them both sides are."""
+    free, within = (
+        of_variance(check_estimator(spread(1), 0.5, variance=1 / 12, bounds=bounds, samples=50_000))
+        for bounds in (None, (0, 1))
+    )
+    assert (free.resolution.kind, within.resolution.kind) == ("excess of variance", "bias of variance")
+    for seed in range(5):
+        for sign, known in ((1, free), (1, within), (-1, within)):
+            off = sign * known.resolution.value
+            bounds = (0, 1) if known is within else None
+            wrong = check_estimator(spread(1), 0.5, variance=1 / 12 - off, bounds=bounds, samples=50_000, seed=seed)
+            assert wrong.outcome == "rejected", (seed, sign, str(wrong))
+    missing = check_estimator(spread(1), 0.5, variance=998.0, samples=10_000)
+    assert of_variance(missing).resolution is None
+
+
+def test_the_sign_test_leaves_room_for_what_is_declared():
+    def partner(rng, n):
+        return (rng.random(n) < 0.01999) * 1.0
+
+    for seed in range(3):
+        for more in ({"bounds": (0, 1000)}, {"variance": (10.0095903999, 0.01999 * 0.98001)}):
+            verdict = compare_estimators(rare, partner, samples=30_000, seed=seed, **more)
+            assert verdict.outcome != "rejected", str(verdict)
+    wrong = compare_estimators(partner, lambda rng, n: 1.0 * (rng.random(n) < 0.03), samples=30_000)
+    assert wrong.outcome == "rejected"
+    assert "an event unseen in 30000" in str(wrong)
+    exact = compare_estimators(partner, lambda rng, n: 1.0 * (rng.random(n) < 0.03), bounds=(0, 1), samples=30_000)
+    assert exact.outcome == "rejected"
+    assert "sign test" in str(exact)
+
+
+def test_a_plan_of_hits_is_kept_within_bounds():
+    n = samples_for(bias=0.45, probability=0.5)
+    for seed in range(10):
+        verdict = check_estimator(lambda r, k: (r.random(k) < 0.05) * 1.0, 0.5, bounds=(0, 1), samples=n, seed=seed)
+        assert verdict.outcome == "rejected", str(verdict)

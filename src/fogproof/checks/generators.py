@@ -17,10 +17,11 @@ import numpy as np
 from fogproof.checks.arguments import alpha_of, whole
 from fogproof.checks.diagnosis import likely_cause
 from fogproof.checks.draws import as_array
+from fogproof.checks.statistics.cells import MISS, unevenness
 from fogproof.checks.statistics.succession import fingerprints
-from fogproof.checks.statistics.tails import chi_square_above, normal_two_sided
+from fogproof.checks.statistics.tails import chi_square_above, chi_square_detected, normal_quantile, normal_two_sided
 from fogproof.checks.subject import call
-from fogproof.checks.verdict import Finding, Outcome, Verdict
+from fogproof.checks.verdict import Finding, Outcome, Resolution, Verdict
 from fogproof.errors import SubjectError
 
 _COLUMNS = 4  # first numbers of every stream that are looked at across streams
@@ -144,17 +145,20 @@ def _tests(u: np.ndarray) -> list[Callable[[float], Finding]]:
     return tests
 
 
-def _finding(name: str, message: str, p: float, alpha: float, effect: float) -> Finding:
+def _finding(name: str, message: str, p: float, alpha: float, effect: float, seen: Resolution) -> Finding:
     rejected = p <= alpha
     outcome: Outcome = "rejected" if rejected else "not rejected"
-    return Finding(name, outcome, message, p, alpha, False, effect, effect, cause="correlation" if rejected else "")
+    cause = "correlation" if rejected else ""
+    return Finding(name, outcome, message, p, alpha, False, effect, effect, seen, cause=cause)
 
 
 def _kolmogorov(name: str, x: np.ndarray, alpha: float) -> Finding:
     ordered, n = np.sort(x), len(x)
     distance = float(max(np.max(np.arange(1, n + 1) / n - ordered), np.max(ordered - np.arange(n) / n)))
     p = min(1.0, 2 * math.exp(-2 * n * distance**2))  # Massart 1990
-    return _finding(name, f"Kolmogorov's distance from the uniform law is {distance:.3g}", p, alpha, distance)
+    reach = math.sqrt(math.log(2 / alpha) / (2 * n)) + math.sqrt(math.log(1 / MISS) / (2 * n))
+    seen = Resolution(f"Kolmogorov distance of {name}", min(reach, 1.0), MISS)
+    return _finding(name, f"Kolmogorov's distance from the uniform law is {distance:.3g}", p, alpha, distance, seen)
 
 
 def _uniform(name: str, x: np.ndarray, alpha: float) -> Finding:
@@ -162,13 +166,22 @@ def _uniform(name: str, x: np.ndarray, alpha: float) -> Finding:
     counts = np.bincount((x * cells).astype(np.int64), minlength=cells)
     statistic = float(np.sum((counts - len(x) / cells) ** 2) / (len(x) / cells))
     message = f"chi-square is {statistic:.4g} on {cells} cells"
-    return _finding(name, message, chi_square_above(cells - 1, statistic), alpha, statistic / (cells - 1))
+    p = chi_square_above(cells - 1, statistic)
+    return _finding(name, message, p, alpha, statistic / (cells - 1), _uneven(name, cells, len(x), alpha))
+
+
+def _uneven(name: str, cells: int, n: int, alpha: float) -> Resolution:
+    """Return how uneven n numbers must be in so many cells for chi-square to find it."""
+    seen = math.sqrt(chi_square_detected(cells - 1, alpha, MISS) / n)
+    return Resolution(f"{unevenness(cells)} of {name}", seen, MISS)
 
 
 def _correlation(name: str, a: np.ndarray, b: np.ndarray, alpha: float) -> Finding:
     correlation = 12 * float(np.mean((a - 0.5) * (b - 0.5)))
     p = normal_two_sided(correlation * math.sqrt(a.size))
-    return _finding(name, f"correlation is {correlation:+.3g}", p, alpha, correlation)
+    reach = (normal_quantile(alpha / 2) + normal_quantile(MISS)) / math.sqrt(a.size)
+    seen = Resolution(f"correlation of {name}", min(reach, 1.0), MISS)
+    return _finding(name, f"correlation is {correlation:+.3g}", p, alpha, correlation, seen)
 
 
 def _pairs(name: str, a: np.ndarray, b: np.ndarray, alpha: float) -> Finding:
@@ -177,4 +190,5 @@ def _pairs(name: str, a: np.ndarray, b: np.ndarray, alpha: float) -> Finding:
     expected = a.size / _CELLS**2
     statistic = float(np.sum((counts - expected) ** 2) / expected)
     message = f"chi-square is {statistic:.4g} on {_CELLS} x {_CELLS} cells"
-    return _finding(name, message, chi_square_above(_CELLS**2 - 1, statistic), alpha, statistic / (_CELLS**2 - 1))
+    p, seen = chi_square_above(_CELLS**2 - 1, statistic), _uneven(name, _CELLS**2, a.size, alpha)
+    return _finding(name, message, p, alpha, statistic / (_CELLS**2 - 1), seen)

@@ -121,7 +121,11 @@ class MeanClaim:
         if self.quantity.name == "variance" and "too small" in finding.region and not self._may_fall_short(finding):
             message = f"{finding.message.partition(';')[0]}; rare values that were not seen may hold the rest"
             message += ": ask for more samples" + ("" if self.known.bounded else self.quantity.ways.of_values())
-            return replace(finding, outcome="inconclusive", message=message, p_value=None, cause="", region=())
+            return replace(
+                finding, outcome="inconclusive", message=message, p_value=None, resolution=None, cause="", region=()
+            )
+        if self.quantity.name == "variance" and finding.resolution is not None and not self._may_fall_short(finding):
+            finding = replace(finding, resolution=replace(finding.resolution, kind=f"excess of {self.name}"))
         if self._too_few(finding):
             message = f"{finding.message}; {self.data.n} are too few: the opposite of the reference would pass"
             return replace(finding, outcome="inconclusive", message=message, p_value=None)
@@ -139,8 +143,11 @@ class MeanClaim:
         return light_tailed_p(self.data.n, gap / max(self.data.stderr, math.ulp(0.0))) > self.share
 
     def _may_fall_short(self, finding: Finding) -> bool:
-        """Return whether a variance that is too small is an error: it is none if rare values can hold what is missing."""
-        return finding.distribution_free or self.known.light
+        """Return whether a variance that is too small is an error: it is none if rare values can hold what is missing.
+
+        What they can within declared bounds is allowed for.
+        """
+        return finding.distribution_free or self.known.light or self.known.bounded
 
     def _second_look(self, finding: Finding, again: Again, complete: bool) -> Finding:
         alpha, known = SECOND * self.share, self.known

@@ -2,10 +2,12 @@
 
 Both are identities of functions, so they are looked at point by point, on points that the strategies themselves draw: there is no
 noise. Weights made of densities in another measure (area for solid angle) sum to one all the same; the second identity finds them.
+What no point met may be wrong: the resolution says how rare that is.
 """
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -16,9 +18,10 @@ import numpy as np
 from fogproof.checks.arguments import samples_of, seed_of, whole
 from fogproof.checks.diagnosis import likely_cause
 from fogproof.checks.draws import as_array
+from fogproof.checks.statistics.cells import MISS
 from fogproof.checks.streams import batch_generator
 from fogproof.checks.subject import Precision, call, numbers
-from fogproof.checks.verdict import Finding, Outcome, Verdict
+from fogproof.checks.verdict import Finding, Resolution, Verdict
 from fogproof.contracts import Draw
 from fogproof.errors import InvalidValueError, SubjectError, shorten
 from fogproof.validate import as_float_array, number
@@ -162,10 +165,20 @@ def _weighing(
 
 
 def _pointwise(name: str, good: np.ndarray, values: np.ndarray, x: np.ndarray, message: str, cause: str) -> Finding:
+    """Return what was found at the points x, of which `good` are right.
+
+    That no point lies in a part of the domain which holds a share s of the points of all strategies together has probability
+    (1 - s)^n at most.
+    """
     wrong = np.flatnonzero(~good)
-    outcome: Outcome = "rejected" if len(wrong) else "not rejected"
-    if len(wrong):
-        worst = wrong[0]
-        said = " against ".join(f"{value:.9g}" for value in values[worst])
-        message = f"{len(wrong)} of {len(x)} points: {said} at {shorten(x[worst])}"
-    return Finding(name, outcome, message, effect=len(wrong) / len(x), cause=cause if len(wrong) else "")
+    if not len(wrong):
+        resolution = (
+            Resolution(f"share of points with wrong {name}", -math.expm1(math.log(MISS) / len(x)), MISS)
+            if len(x)
+            else None
+        )
+        return Finding(name, "not rejected", message, effect=0.0, resolution=resolution)
+    worst = wrong[0]
+    said = " against ".join(f"{value:.9g}" for value in values[worst])
+    message = f"{len(wrong)} of {len(x)} points: {said} at {shorten(x[worst])}"
+    return Finding(name, "rejected", message, effect=len(wrong) / len(x), cause=cause)

@@ -41,7 +41,8 @@ def samples_for(
 
     bias              smallest one that must be found, in the unit of the values
     variance          of one realisation; averages of many paths are about normal. Fewer than a thousand need tails="light"
-    probability       of a hit, for an estimator of hits (1) and misses (0): its mean; the bias is one of that probability
+    probability       of a hit, for an estimator of hits (1) and misses (0): its mean; the bias is one of that probability. Declare
+                      bounds=(0, 1) to the check: without them it says nothing of hits, or misses, that are all but missing
     bounds            (low, high) of the values, where nothing else is known of them
     whatever_the_law  plan for rare bright values: `variance` must then be declared to the check too
     channels          how many means share the false alarms
@@ -60,7 +61,7 @@ def samples_for(
     if [variance, probability, bounds].count(None) != 2:
         given = {"variance": variance, "probability": probability, "bounds": bounds}
         raise InvalidValueError("variance, probability or bounds", "must be given, one of them", given)
-    declared = bounds is not None or whatever_the_law
+    declared = bounds is not None or probability is not None or whatever_the_law
     claims = channels * (2 if whatever_the_law else 1)
     usual, distribution_free, bets = share_of_means(false_fail, claims, declared)
     if probability is not None:

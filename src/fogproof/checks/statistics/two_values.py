@@ -121,9 +121,8 @@ class _Claim:
         """Return the bias that is found but for the probability `MISS`."""
         inside = max(self.low, 0.0), min(self.high, 1.0)
         least = 0 if known.bounded else _LEAST  # bounds decide about a value that came once, or not at all
-        return (
-            binomial_reach(n, *inside, alpha, least=least, margins=(self.above, self.below)) + self.widened
-        ) * self.step
+        found = binomial_reach(n, *inside, alpha, least=least, margins=(self.above, self.below))
+        return (found + self.widened) * self.step
 
 
 def _shares_of(share: float, rare: float, known: Known, step: float) -> tuple[float, float]:
