@@ -9,7 +9,7 @@ from fogproof import check_estimator
 from fogproof.checks.escalation import EARLY
 from fogproof.checks.mean_claim import MeanClaim
 from fogproof.checks.quantities import CheckedQuantity
-from fogproof.checks.statistics.coverage import degrees_of_freedom
+from fogproof.checks.statistics.coverage import degrees_of_freedom, of_few_values
 from fogproof.checks.statistics.known import Known
 from fogproof.checks.statistics.means import mean_test
 from fogproof.checks.statistics.moments import Moments
@@ -88,10 +88,21 @@ def test_what_would_just_be_caught_has_made_up_for_its_skewness(n):
     assert p[0] > ALPHA / 10, "and not much smaller"
 
 
-@pytest.mark.parametrize("freedom", [1, 4, 30])
+@pytest.mark.parametrize("freedom", [1, 4, 16])
 def test_degrees_of_freedom_are_those_of_the_squares(freedom):
-    squares = np.random.default_rng().chisquare(freedom, 200_000) / freedom
-    assert degrees_of_freedom(Moments.of(squares)) == pytest.approx(freedom, rel=0.1)
+    rng = np.random.default_rng()
+    squares = Moments.of(rng.chisquare(freedom, 200_000) / freedom)
+    normal = Moments.of(rng.normal(size=2_000_000))
+    assert degrees_of_freedom(squares, normal) == pytest.approx(freedom, rel=0.1)
+    assert of_few_values(squares, normal) == (freedom < 10)
+
+
+def test_degrees_of_freedom_of_values_that_are_not_normal():
+    """Four uniforms have three, though their squared standard errors scatter as those of five or six normal ones."""
+    x = np.random.default_rng().random((200_000, 4))
+    squares, means = Moments.of(x.var(axis=1, ddof=1)), Moments.of(x.mean(axis=1))
+    assert degrees_of_freedom(squares, means) == pytest.approx(3, rel=0.1)
+    assert of_few_values(squares, means)
 
 
 def test_an_order_is_0_where_another_order_was_drawn():

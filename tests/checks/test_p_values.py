@@ -16,7 +16,7 @@ from fogproof.checks.density.lookup import Lookup
 from fogproof.checks.generators import _correlation, _kolmogorov, _pairs
 from fogproof.checks.statistics.binomial import binomial_p
 from fogproof.checks.statistics.chi_square import chi_square, deviances, pooled
-from fogproof.checks.statistics.coverage import SLACK, Coverage, coverage_test
+from fogproof.checks.statistics.coverage import SLACK, Coverage, coverage_test, degrees_of_freedom
 from fogproof.checks.statistics.dependence import (
     concordance,
     repeated_stretches,
@@ -336,7 +336,7 @@ def test_hits_of_unequal_numbers_are_not_compared_as_equal_ones():
 
 
 def test_coverage_is_held_to_the_exact_binomial_tail():
-    normal = Moments.of(np.random.default_rng().normal(size=5000))
+    normal = Moments.of(np.random.default_rng().normal(size=500_000))
     squares, off = Moments.of(np.full(4, 1.0)), Moments.of(np.zeros(4))
     nominal = stats.norm.cdf(2) - stats.norm.cdf(-2)
     room = SLACK + 0.25 * normal.skewness**2
@@ -344,9 +344,9 @@ def test_coverage_is_held_to_the_exact_binomial_tail():
         found = coverage_test("", Coverage(5000, held_by, (squares,)), [normal], [off], 1e-6)
         assert found.p_value == near(stats.binom.cdf(held_by, 5000, nominal - room), rel=1e-6)
         assert (found.outcome == "rejected") == (found.p_value <= 1e-6)
-    few = Moments.of(np.random.default_rng().chisquare(4, 100_000) / 4)
-    found = coverage_test("", Coverage(5000, 4400, (few,)), [normal], [off], 1e-6)
-    nominal = 1 - 2 * stats.t.sf(2, 4)
+    some = Moments.of(np.random.default_rng().chisquare(20, 100_000) / 20)
+    found = coverage_test("", Coverage(5000, 4400, (some,)), [normal], [off], 1e-6)
+    nominal = 1 - 2 * stats.t.sf(2, degrees_of_freedom(some, normal))
     assert found.p_value == near(stats.binom.cdf(4400, 5000, nominal - room), rel=0.5)
     two = coverage_test("", Coverage(5000, 4100, (squares, squares)), [normal, normal], [off, off], 1e-6)
     nominal = 1 - 2 * 2 * stats.norm.sf(2)

@@ -50,6 +50,20 @@ MINE = """
 
     class Exact(Drawn):
         title, sd = "Alike and right", 0.0
+
+    class Certain(Alike):
+        variance = 0.0
+
+    class Rare(Drawn):  # hits, and four times in a million one that is worth 5000
+        bounds = (0, 5000)
+
+        @property
+        def variance(self):
+            return 100 + (self.mean - 0.02) - self.mean**2
+
+        def draw(self, rng, n):
+            u = rng.random(n)
+            return np.where(u < 4e-6, 5000.0, np.where(u < 4e-6 + self.mean - 0.02, 1.0, 0.0))
 """
 NAMES = ("Plain", "DeclaredAndUnseen", "Falling", "Level", "Rising", "Growing", "Outside", "Alike", "Exact")
 
@@ -120,6 +134,16 @@ def test_what_is_rejected_for_something_else_is_not_called_biased(told):
 def test_what_is_alike_and_wrong_is_not_asked_for_more_samples(told):
     assert "all realisations are alike and are not the reference: fog / spoken:Alike." in told[0]["advice"]
     assert "Raise" not in told[0]["advice"]
+
+
+def test_a_variance_of_0_decides_about_what_is_alike_and_an_exact_one_about_what_was_not_met(tmp_path):
+    for seed in range(4):
+        record = run_study(
+            read_study(written(tmp_path / str(seed), ("Certain", "Rare"), seed=seed)), tmp_path / f"run{seed}"
+        )
+        certain, rare = record["scenes"][0]["estimators"]
+        assert certain["status"] == "rejected"
+        assert rare["status"] != "rejected", rare
 
 
 def test_names_that_somebody_else_wrote_are_kept_as_they_are(told):

@@ -65,7 +65,9 @@ def judged(seen: Observed, again: Again, samples: int, alpha: float, complete: b
         name = f"{quantity.name} of channel {channel}" if len(quantity.value) > 1 else quantity.name
         if quantity.name == "variance" and channel in fixed:
             continue
-        claim = MeanClaim(quantity, channel, name, data, samples, share)
+        values = seen.moments[0][channel]
+        further = 0.0 if quantity.further is None else quantity.further(values.low, values.high, channel)
+        claim = MeanClaim(quantity, channel, name, data, samples, share, further)
         finding = claim.exactly() if quantity.name == "mean" and channel in fixed else claim.judged(again, complete)
         final |= claim.beyond_doubt(finding)
         if quantity is seen.quantities[0]:

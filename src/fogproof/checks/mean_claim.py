@@ -30,7 +30,10 @@ Again = Callable[[], Iterable[tuple[Draws, list[int]]]]
 
 @dataclass(frozen=True)
 class MeanClaim:
-    """One quantity in one channel, what was seen of it, and its share of alpha."""
+    """One quantity in one channel, what was seen of it, and its share of alpha.
+
+    further  how far off a number that was not met must be allowed to lie, where only two were and nothing is declared
+    """
 
     quantity: CheckedQuantity
     channel: int
@@ -38,6 +41,7 @@ class MeanClaim:
     data: Moments
     samples: int
     share: float
+    further: float = 0.0
 
     @property
     def value(self) -> float:
@@ -59,7 +63,7 @@ class MeanClaim:
     def known(self) -> Known:
         """What is declared; and where nothing is, that there are no negative values if only absurd ones could matter."""
         known = self.quantity.known_of(self.channel)
-        undeclared = known == Known(light=known.light) and not self.quantity.signed
+        undeclared = known == Known(light=known.light, told=known.told) and not self.quantity.signed
         if self.quantity.name.startswith("mean") and undeclared and self.data.low >= 0 and self._absurd(above=True):
             return replace(known, low=0.0, assumed=True)
         return known
@@ -108,6 +112,7 @@ class MeanClaim:
             known,
             self.uncertain,
             self.quantity.ways,
+            self.further,
         )
         if finding.outcome == "inconclusive" and self.quantity.tame and self.data.m2 == 0 and self._absurd():
             side = "too large" if self.data.mean > self.value else "too small"

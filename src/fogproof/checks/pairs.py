@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -11,8 +12,10 @@ from fogproof.checks.judgement import Judgement, dependence, judged, share_of_a_
 from fogproof.checks.observed import Observed
 from fogproof.checks.quantities import OF_A_DIFFERENCE, Declared, column, quantities_of
 from fogproof.checks.statistics.binomial import binomial_p
+from fogproof.checks.statistics.means import short_of_variance
 from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.statistics.power import sign_reach
+from fogproof.checks.statistics.unseen import unseen
 from fogproof.checks.verdict import Finding, Outcome, Resolution
 from fogproof.contracts import Draws, Reference
 
@@ -123,11 +126,14 @@ class Pairs:
         start = f"means {a.mean:.7g} and {b.mean:.7g} differ by {effect:+.3g} +- {spread:.2g}"
         rest = finding.message.partition(";")[2]
         finding = replace(finding, check=name, message=start + (f";{rest}" if rest else ""))
-        if self.declared.tolerance == (0.0, 0.0) and _hits_of_the_same(a, b):
+        if self.declared.tolerance == (0.0, 0.0) and _hits_of_the_same(a, b) and self._nothing_else(a, b, channel):
             more, fewer = map(int, self.signs[:, channel])
             p = binomial_p(more, more + fewer, 0.5, 0.5) if more + fewer else 1.0
             outcome: Outcome = "rejected" if p <= alpha else "not rejected"
             message = f"{start} (sign test of the {more + fewer} pairs in which they differ)"
+            known = self.declared.known(self._variance)
+            if outcome == "rejected" and not known.two_sided:
+                message += unseen(self.seen.moments[0][channel], effect, 0.0, alpha, known)
             reach = sign_reach(self.seen.n, more + fewer, alpha) * (max(a.high, b.high) - min(a.low, b.low))
             finding = replace(
                 finding,
@@ -151,6 +157,12 @@ class Pairs:
         rejected = finding.outcome == "rejected"
         larger = ("the first is the larger",) if effect > 0 else ("the second is the larger",)
         return replace(finding, effect=effect, region=larger if rejected else (), cause="bias" if rejected else "")
+
+    def _nothing_else(self, a: Moments, b: Moments, channel: int) -> bool:
+        """Return whether nothing that is declared asks for values beside the two that were seen, or leaves room for them."""
+        room = self.declared.bounds[1]  # of a difference: as far as values lie apart
+        within = math.isinf(room) or room <= (max(a.high, b.high) - min(a.low, b.low)) * (1 + _EQUAL)
+        return within and not short_of_variance(self.seen.moments[0][channel], self.declared.known(self._variance))
 
     @property
     def _rounding(self) -> float:

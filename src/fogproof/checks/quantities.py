@@ -37,6 +37,7 @@ class CheckedQuantity:
     tame     whether an event a hundred times larger than all that was seen is out of the question
     signed   whether numbers of both signs are usual, so that it tells nothing if none was negative
     ways     what the caller may declare about it
+    further  (lowest, highest value so far, channel) -> how far off a number that was not met may lie, if the values can tell
     """
 
     name: str
@@ -49,6 +50,7 @@ class CheckedQuantity:
     tame: bool = False
     signed: bool = False
     ways: Declarable = NOTHING_MORE
+    further: Callable[[float, float, int], float] | None = None
 
     def known_of(self, channel: int) -> Known:
         """Return what is declared of the numbers of one channel."""
@@ -108,7 +110,8 @@ def quantities_of(
         # (X - r)^2 has expectation V + (mean - r)^2, and |mean - r| <= error; what of that is tolerated is no doubt of V.
         v_own, v_error = v_error + own**2, v_error + error**2
         largest = np.maximum((high - value) ** 2, (value - low) ** 2)
-        squares = tuple(Known(low=0.0, high=float(one), light=declared.light) for one in largest)
+        told = "" if math.isfinite(low) or math.isfinite(high) else "that no square is negative"
+        squares = tuple(Known(low=0.0, high=float(one), light=declared.light, told=told) for one in largest)
         more.append(
             CheckedQuantity(
                 "variance",
@@ -125,6 +128,11 @@ def quantities_of(
         unit = _unit(stderr)
         zero = np.zeros_like(value)
         name, cause = "square of the error less that of the standard error", "wrong standard errors"
+        told = "that no error is larger than the bounds leave"
+        most = np.maximum(high - value + error, value + error - low) / unit
+        bounded = (
+            tuple(Known(high=float(one), told=told) for one in _squared(most)) if math.isfinite(high - low) else ()
+        )
         more.append(
             CheckedQuantity(
                 name,
@@ -132,7 +140,11 @@ def quantities_of(
                 zero,
                 (error / unit) ** 2,
                 cause,
+                bounded,
                 own=(own / unit) ** 2,
+                ways=Declarable(other="bounds=(low, high)"),
+                # An error twice as large as any so far: of averages of rare hits, two hits are four times one in the square.
+                further=lambda low, high, c: (2 * max(high - value[c], value[c] - low) / unit) ** 2,
             )
         )
     mean = CheckedQuantity("mean", lambda d: d.value, value, error, "bias", tuple(known), own, ways=OF_A_MEAN)
@@ -192,7 +204,11 @@ def _cost(declared: Declared) -> list[CheckedQuantity]:
         return column(d.cost)
 
     value, error = _exact("cost", declared.cost, 1)
-    return [CheckedQuantity("cost", numbers, value, error, "wrong cost", (Known(low=0.0),), tame=True)]
+    return [
+        CheckedQuantity(
+            "cost", numbers, value, error, "wrong cost", (Known(low=0.0, told="that no cost is negative"),), tame=True
+        )
+    ]
 
 
 def _exact(name: str, reference: Reference | float, channels: int | None) -> tuple[np.ndarray, np.ndarray]:

@@ -11,9 +11,10 @@ import numpy as np
 from fogproof.checks import Finding
 from fogproof.checks.statistics.heavy import TailEstimate
 from fogproof.checks.statistics.known import NOTHING, Known
-from fogproof.checks.statistics.means import mean_test
+from fogproof.checks.statistics.means import mean_test, short_of_variance
 from fogproof.checks.statistics.moments import ORDINARY, Moments
 from fogproof.checks.statistics.tails import gamma_above, normal_quantile, student_two_sided
+from fogproof.checks.statistics.two_values import two_valued
 from fogproof.checks.verdict import Outcome
 from fogproof.contracts import Reference
 from fogproof.study.aggregate import Level, pooled
@@ -94,12 +95,12 @@ def judge(cell: Cell, levels: Sequence[Level], variance: Reference | None, alpha
         findings.append(_scrambled(levels[-1], value, resolution_of(value, error), alpha))
     else:
         data = pooled(np.concatenate([level.rows for level in levels]))
-        known = _known(cell, variance)
+        known = _known(cell, variance, data.low == data.high)
         findings.append(mean_test("mean", "mean", data, value, error, alpha, known=known))
         if data.low < known.low or data.high > known.high:
             told = f"realisations reach from {data.low:.6g} to {data.high:.6g}, declared are {known.low:g} to {known.high:g}"
             findings.append(Finding("bounds", "rejected", told, cause="contract"))
-        findings += _against_theory(levels, variance, alpha)
+        findings += _against_theory(levels, variance, alpha, known, value)
         warning = _heavy(levels, data, value)
         if warning and variance is None and "infinite" in warning:
             findings[0] = replace(findings[0], outcome="inconclusive", message=f"{findings[0].message}; {warning}")
@@ -112,13 +113,16 @@ def judge(cell: Cell, levels: Sequence[Level], variance: Reference | None, alpha
     return Judged(outcome, tuple(findings), warning, times_as_many)
 
 
-def _known(cell: Cell, variance: Reference | None) -> Known:
-    """Return what is known of the law where the values have bounds: then a mean is judged however skewed they are."""
+def _known(cell: Cell, variance: Reference | None, alike: bool) -> Known:
+    """Return what is known of the law: where the values have bounds, a mean is judged however skewed they are.
+
+    Realisations that are all alike are judged without bounds too, where their variance is exactly 0.
+    """
     bounds = cell.method.bounds(cell.scene)
-    if bounds is None:
-        return NOTHING
     known = variance is not None and np.isfinite(variance.value)
     most = float(variance.value) + float(variance.error) if variance is not None and known else None
+    if bounds is None:
+        return Known(variance=0.0) if most == 0 and alike else NOTHING
     return Known(variance=most, low=float(bounds[0]), high=float(bounds[1]))
 
 
@@ -178,16 +182,29 @@ def _exact(cell: Cell, levels: Sequence[Level], value: float, error: float) -> F
     return Finding("value", outcome, message, effect=worst, cause="bias" if wrong else "")
 
 
-def _against_theory(levels: Sequence[Level], variance: Reference | None, alpha: float) -> list[Finding]:
+def _of_squares(known: Known, value: float) -> Known:
+    """Return what is known of the squares of deviations from the value."""
+    furthest = max(known.high - value, value - known.low)
+    return Known(low=0.0, high=furthest * furthest, told="" if known.bounded else "that no square is negative")
+
+
+def _against_theory(
+    levels: Sequence[Level], variance: Reference | None, alpha: float, known: Known, value: float
+) -> list[Finding]:
     """Return what the exact variance says of the spread of realisations, and of that of whole replicates."""
     if variance is None or not np.isfinite(variance.value):
         return []
     squares = pooled(np.stack([level.squares for level in levels]))
     exact, error = float(variance.value), float(variance.error)
     what = "mean squared deviation"
-    findings = [mean_test("variance", what, squares, exact, error, alpha, "wrong variance")]
+    found = mean_test("variance", what, squares, exact, error, alpha, "wrong variance", known=_of_squares(known, value))
+    if "too small" in found.region and two_valued(squares) and not found.distribution_free and not known.bounded:
+        message = f"{found.message.partition(';')[0]}; rare values that were not seen may hold the rest"
+        found = replace(found, outcome="inconclusive", message=message, p_value=None, cause="", region=())
+    findings = [found]
     last, data = levels[-1], pooled(levels[-1].rows)
-    if exact > 0 and len(last.rows) > 1 and data.m2 > 0 and excess(data) / last.count < _NEARLY_NORMAL:
+    met = not short_of_variance(data, Known(variance=exact + error))  # else rare values that were not met would scatter
+    if met and exact > 0 and len(last.rows) > 1 and data.m2 > 0 and excess(data) / last.count < _NEARLY_NORMAL:
         findings.append(_scatter(last, exact, alpha))
     return findings
 

@@ -138,8 +138,8 @@ def advice(study: Study, measured: Sequence[Measured]) -> str:
         )
     if alike:
         said.append(
-            f"Not judged unbiased, all realisations are alike and are not the reference: {_names(alike)}. What has `bounds` is"
-            " judged: without them, values too rare to be met may make up the difference."
+            f"Not judged unbiased, all realisations are alike and are not the reference: {_names(alike)}. What has `bounds`, or"
+            " a `variance` of 0, is judged: without them, values too rare to be met may make up the difference."
         )
     return " ".join(said)
 

@@ -14,6 +14,7 @@ class Known:
     low, high  no realisation lies outside
     light      its tails are no heavier than those of the exponential law: Student's test may be used with few realisations
     assumed    bounds are not declared: no negative value was seen, and one that mattered would have to be absurdly large
+    told       where nobody declared it: what is relied on, in words
     """
 
     variance: float | None = None
@@ -21,6 +22,7 @@ class Known:
     high: float = math.inf
     light: bool = False
     assumed: bool = False
+    told: str = ""
 
     @property
     def deviation(self) -> float | None:
@@ -39,6 +41,8 @@ class Known:
 
     def words(self) -> str:
         """Return what is relied on, for a message."""
+        if self.told:
+            return self.told
         facts = [] if self.variance is None else [f"the declared variance {self.variance:.3g}"]
         if self.assumed:
             facts.append("that no value is negative, as none so far was")

@@ -1,10 +1,10 @@
 """Does a mean equal its reference? A test that knows where it does not hold.
 
-Data of two values (hit or miss) get the exact binomial test. Anything else gets Student's t, whose far tail is wrong by the factor
-exp(|skewness| z^3 / (3 sqrt n)) to leading order (Edgeworth's expansion of the studentised mean, Hall 1987): the p-value is
-multiplied by that factor, and where it is large, or one sample dominates the variance, or the sample varies less than declared, the
-verdict is inconclusive. What is declared (`Known`) is tested beside it, whatever the law, and what events that were not met may
-bring within declared bounds is allowed for.
+Data of two values (hit or miss) get the exact binomial test (`two_values`). Anything else gets Student's t, whose far tail is wrong
+by the factor exp(|skewness| z^3 / (3 sqrt n)) to leading order (Edgeworth's expansion of the studentised mean, Hall 1987): the
+p-value is multiplied by that factor, and where it is large, or one sample dominates the variance, or the sample varies less than
+declared, the verdict is inconclusive. What is declared (`Known`) is tested beside it, whatever the law, and what events that were
+not met may bring within declared bounds is allowed for.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ import math
 import sys
 from dataclasses import replace
 
-from fogproof.checks.statistics.binomial import binomial_p
 from fogproof.checks.statistics.cells import MISS
 from fogproof.checks.statistics.extremes import detectable, extremes_p
 from fogproof.checks.statistics.interval import effect_interval
 from fogproof.checks.statistics.known import NOTHING, NOTHING_MORE, Declarable, Known
 from fogproof.checks.statistics.light import light_tailed_p, light_tailed_reach
 from fogproof.checks.statistics.moments import Moments
-from fogproof.checks.statistics.power import binomial_reach, student_reach
+from fogproof.checks.statistics.power import student_reach
 from fogproof.checks.statistics.tails import normal_quantile, student_two_sided
+from fogproof.checks.statistics.two_values import two_valued, two_values_test
 from fogproof.checks.statistics.unseen import SHARE, allowances, unseen
 from fogproof.checks.verdict import Finding, Outcome, Resolution
 
@@ -47,20 +47,25 @@ def mean_test(
     known: Known = NOTHING,
     uncertain: float | None = None,
     ways: Declarable = NOTHING_MORE,
+    further: float = 0.0,
 ) -> Finding:
     """Test that the expectation behind `data` lies within `error` of `reference`.
 
     uncertain  the part of the error by which the reference itself may be off, all of it unless given; the rest is tolerated
     ways       what the caller could declare, for messages
+    further    how far off values that were not met may lie at least, where only two were and nothing is declared
     """
     uncertain = error if uncertain is None else uncertain
     if data.n == 0:
         return Finding(name, "inconclusive", f"{what}: there are no data", alpha=alpha)
-    share = alpha if known == replace(NOTHING, light=known.light) else (1 - DISTRIBUTION_FREE) * alpha
+    share = alpha if known == replace(NOTHING, light=known.light, told=known.told) else (1 - DISTRIBUTION_FREE) * alpha
     if data.low == data.high:
         finding = _constant(name, what, data, reference, error, share, known, ways)
     elif two_valued(data):
-        finding = _two_values(name, what, data, reference, error, share, known)
+        finding = two_values_test(name, what, data, reference, error, share, known, further)
+        if finding.outcome == "inconclusive":
+            more = "" if known.two_sided else ways.of_values()
+            finding = replace(finding, message=f"{finding.message}: ask for more {ways.more}{more}")
     else:
         finding = _student(name, what, data, reference, error, share, known, ways)
     if share < alpha and finding.outcome != "rejected":
@@ -109,11 +114,6 @@ def short_of_variance(data: Moments, known: Known) -> bool:
     return square + _SHORT * spread < (known.deviation / data.scale) ** 2 * (1 - 1e-9)
 
 
-def two_valued(data: Moments) -> bool:
-    """Return whether there are two values, each of which came back: one that came once may be any of many."""
-    return data.values is not None and len(data.values) == 2 and min(data.values.values()) > 1
-
-
 def _constant(
     name: str,
     what: str,
@@ -133,27 +133,6 @@ def _constant(
         message += "; an event too rare to be seen looks the same as a bias"
         message += unseen(data, data.mean - reference, error, alpha, known) + ways.of_a_constant()
     return Finding(name, "inconclusive", message, None, alpha, effect=data.mean - reference)
-
-
-def _two_values(
-    name: str, what: str, data: Moments, reference: float, error: float, alpha: float, known: Known
-) -> Finding:
-    assert data.values is not None
-    (low, _), (high, count) = sorted(data.values.items())
-    step = high - low
-    down, up = allowances(data, known, alpha)
-    claim = (reference - error - up - low) / step, (reference + error + down - low) / step
-    p = binomial_p(count, data.n, *claim) if claim[0] <= 1 and claim[1] >= 0 else 0.0
-    p = _with_unseen(p, down + up)
-    outcome: Outcome = "rejected" if p <= alpha else "not rejected"
-    message = f"{what} {data.mean:.7g}, reference {reference:.7g} (exact binomial test of its two values)"
-    effect = data.mean - reference
-    resolution = None
-    if claim[0] <= 1 and claim[1] >= 0:  # no law of these two values has another mean: nothing is planned for it
-        inside = max(claim[0], 0.0), min(claim[1], 1.0)
-        reach = binomial_reach(data.n, *inside, alpha) * step + error + max(down, up)
-        resolution = Resolution(f"bias of {what}", reach, MISS, reference)
-    return Finding(name, outcome, message, p, alpha, False, effect, effect, resolution)
 
 
 def _student(
@@ -189,7 +168,7 @@ def _student(
     reach += error + rounding + max(down, up)  # which are no bias, and hide one
     resolution = Resolution(f"bias of {what}", reach, MISS, reference) if math.isfinite(reach) else None
     if light:
-        message += ", its tails declared to be light"
+        message += f", its tails {'taken' if known.told else 'declared'} to be light"
     return Finding(name, outcome, message, p, alpha, exact, z, effect, resolution)
 
 

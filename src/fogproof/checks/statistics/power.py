@@ -23,18 +23,37 @@ def student_reach(data: Moments, alpha: float, miss: float = MISS) -> float:
     return (needed + normal_quantile(miss)) * data.stderr * (1 + growth)
 
 
-def binomial_reach(n: int, low: float, high: float, alpha: float, miss: float = MISS) -> float:
+def binomial_reach(
+    n: int,
+    low: float,
+    high: float,
+    alpha: float,
+    miss: float = MISS,
+    least: int = 0,
+    margins: tuple[float, float] = (0.0, 0.0),
+) -> float:
     """Return the smallest change of a probability in [low, high] that the exact binomial test finds but for `miss`, both ways.
 
+    least    how often hits, and misses, must have come for the test to be used at all
+    margins  by how many a count must be too small, and too large, besides
     Where not even a probability of zero would be found, it is the whole probability.
     """
+    part = miss if least == 0 else 0.9 * miss  # the rest for fewer than `least`
+    many = _first(lambda count: binomial_p(count, n, low, high) <= alpha, math.ceil(n * high + margins[1]), n)
+    few = _first(lambda misses: binomial_p(n - misses, n, low, high) <= alpha, math.ceil(n * (1 - low) + margins[0]), n)
+    rise = _found(n, many, part, least, miss - part)
+    fall = _found(n, few, part, least, miss - part)
+    return max((1 if rise is None else rise) - high, low - (0 if fall is None else 1 - fall), 0.0)
+
+
+def _found(n: int, count: int | None, miss: float, least: int, rare: float) -> float | None:
+    """Return the smallest probability that leads to so many hits but for `miss`; None if `least` misses may then be wanting."""
     from scipy.special import betaincinv
 
-    many = _first(lambda count: binomial_p(count, n, low, high) <= alpha, math.ceil(n * high), n)
-    rise = 1 - high if many is None else float(betaincinv(many, n - many + 1, 1 - miss)) - high
-    few = _first(lambda misses: binomial_p(n - misses, n, low, high) <= alpha, math.ceil(n * (1 - low)), n)
-    fall = low if few is None else low - float(betaincinv(n - few + 1, few, miss))
-    return max(rise, fall, 0.0)
+    if count is None:
+        return None
+    p = float(betaincinv(count, n - count + 1, 1 - miss))
+    return None if least and binomial_at_most(least - 1, n, 1 - p) > rare else p
 
 
 def sign_reach(n: int, differ: int, alpha: float) -> float:
@@ -58,7 +77,7 @@ def sign_reach(n: int, differ: int, alpha: float) -> float:
 
 def _first(holds: Callable[[int], bool], start: int, end: int) -> int | None:
     """Return the first whole number in [start, end] from which on `holds` is true, None if there is none."""
-    if not holds(end):
+    if start > end or not holds(end):
         return None
     while start < end:
         middle = (start + end) // 2

@@ -28,14 +28,19 @@ def unseen_size(data: Moments, effect: float, error: float, alpha: float) -> flo
     return math.copysign(gap * (data.n / math.log(1 / alpha)), -effect)
 
 
+def rarest(n: int, alpha: float) -> float:
+    """Return how likely values can be that all n realisations missed, but for the probability alpha: (1 - q)^n <= exp(-n q)."""
+    return min(math.log(1 / alpha) / n, 1.0)
+
+
 def allowances(data: Moments, known: Known, alpha: float) -> tuple[float, float]:
     """Return by how much events beyond all that was seen may lower and raise the mean, within declared bounds.
 
-    Events of probability q together are all missed with probability (1 - q)^n <= exp(-n q). A side without a bound is not allowed
-    for: nothing could be said about any mean. Where a variance is declared, what is missing shows in the sample's.
+    A side without a bound is not allowed for: nothing could be said about any mean. Where a variance is declared, what is missing
+    shows in the sample's.
     """
     if known.assumed or known.variance is not None:
         return 0.0, 0.0
-    rare = min(math.log(1 / (SHARE * alpha)) / data.n, 1.0)
+    rare = rarest(data.n, SHARE * alpha)
     below, above = data.low - known.low, known.high - data.high
     return tuple(rare * max(room, 0.0) if math.isfinite(room) else 0.0 for room in (below, above))  # type: ignore[return-value]
