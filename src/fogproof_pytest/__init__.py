@@ -216,7 +216,8 @@ def _tried_again(config: pytest.Config) -> list[str]:
 
 def pytest_terminal_summary(terminalreporter: Any, exitstatus: int, config: pytest.Config) -> None:
     """Say what was judged, what of the false-alarm probability was spent, and what could not have been missed."""
-    late, told = config.stash[_LATE], {}
+    late: list[Any] = config.stash[_LATE]
+    told: dict[tuple[str, int], dict[str, Any]] = {}
     news = [one for report in _reports(config) for one in getattr(report, "fogproof", ())]
     for test, number, verdict, _ in [*news, *late]:
         before = told.get((test, number))
