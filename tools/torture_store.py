@@ -97,6 +97,8 @@ def changed(value: Any, rng: random.Random) -> Any:
     match value:
         case None:
             return 0.0
+        case "" | b"":  # no bit to change: one more letter
+            return " " if value == "" else b" "
         case int():
             return struct.unpack("<q", changed(struct.pack("<q", value), rng))[0]
         case float():

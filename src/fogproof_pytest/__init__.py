@@ -199,16 +199,29 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
     late += _drained(config.stash[_NEWS])
     if hasattr(config, "workeroutput"):
         config.workeroutput["fogproof"] = late
-    if session.exitstatus in (0, _NOTHING) and any(why for *_, why in late):
+    if session.exitstatus in (0, _NOTHING) and (any(why for *_, why in late) or _tried_again(config)):
         session.exitstatus = _FAILED
+
+
+def _reports(config: pytest.Config, *kinds: str) -> list[Any]:
+    """Return the reports of some kinds that the terminal has counted, or of all."""
+    counted = getattr(config.pluginmanager.get_plugin("terminalreporter"), "stats", {})
+    return [report for kind, reports in counted.items() if not kinds or kind in kinds for report in reports]
+
+
+def _tried_again(config: pytest.Config) -> list[str]:
+    """Return what a test that was run again had been rejected for: under one seed the same try has one answer."""
+    return [why for report in _reports(config, "rerun") for *_, why in getattr(report, "fogproof", ()) if why]
 
 
 def pytest_terminal_summary(terminalreporter: Any, exitstatus: int, config: pytest.Config) -> None:
     """Say what was judged, what of the false-alarm probability was spent, and what could not have been missed."""
-    late, told = config.stash[_LATE], {}
-    reports = [report for reports in terminalreporter.stats.values() for report in reports]
-    for test, number, verdict, _ in [*(one for each in reports for one in getattr(each, "fogproof", ())), *late]:
-        if verdict:
+    late: list[Any] = config.stash[_LATE]
+    told: dict[tuple[str, int], dict[str, Any]] = {}
+    news = [one for report in _reports(config) for one in getattr(report, "fogproof", ())]
+    for test, number, verdict, _ in [*news, *late]:
+        before = told.get((test, number))
+        if verdict and (before is None or before["outcome"] != "rejected"):  # another try takes no rejection back
             told[test, number] = verdict
     folder = config.getoption("--fogproof-report")
     lost, crashed = [why for *_, why in late if why], config.stash[_CRASHED]
@@ -222,6 +235,11 @@ def pytest_terminal_summary(terminalreporter: Any, exitstatus: int, config: pyte
     if lost:
         terminalreporter.write_line(
             f"after the last test had been reported, so that the session fails: {'; '.join(lost)}"
+        )
+        exitstatus = exitstatus or _FAILED
+    if again := _tried_again(config):
+        terminalreporter.write_line(
+            f"rejected, and run again; the seed is the same, so that chance is no excuse: {'; '.join(again)}"
         )
         exitstatus = exitstatus or _FAILED
     if folder:

@@ -355,3 +355,34 @@ def test_a_test_that_ends_its_worker_is_on_the_page(tmp_path):
     assert (lost["status"], "ended before it was finished" in lost["reason"]) == ("error", True)
     assert "test_mine.py::test_dead" in (tmp_path / "report" / "index.html").read_text()
     assert len(cases) == 2
+
+
+@pytest.mark.parametrize("workers", [(), ("-n", "1")], ids=["alone", "xdist"])
+def test_a_rejection_is_not_taken_back_by_another_try(tmp_path, workers):
+    """A subject that ignores its generator would get as many tries as it likes."""
+    text = """
+        import numpy as np
+
+        tries = []
+
+        def test_moody(fogproof):
+            tries.append(1)
+            k = 2 if len(tries) == 1 else 1
+            sample, pdf = lambda u: u[:, 0] ** k, lambda x: np.ones(len(x))
+            fogproof.check_sampler(sample, pdf, fogproof.Interval(0.0, 1.0), dimensions=1, samples=20_000)
+
+        def test_slips(fogproof):
+            tries.append(1)
+            fogproof.check_estimator(lambda rng, n: rng.random(n), 0.5, samples=1000)
+            assert len(tries) > 3
+    """
+    out = run(tmp_path, text, "--reruns", "3", f"--fogproof-report={tmp_path}/page", *workers)
+    assert out.returncode == 1, out.stdout + out.stderr
+    assert "2 passed" in out.stdout
+    assert re.search("verdicts: (1 rejected, 1 not rejected|1 not rejected, 1 rejected)\n", out.stdout), out.stdout
+    assert "rejected, and run again" in out.stdout
+    record = json.loads((tmp_path / "page" / "results.json").read_text())
+    assert sorted(case["status"] for case in record["cases"]) == ["passed", "rejected"]
+    assert record["exit_code"] == 1
+    right = run(tmp_path, text.replace("k = 2 if", "k = 1 if"), "--reruns", "3", *workers)
+    assert right.returncode == 0, right.stdout + right.stderr
