@@ -75,7 +75,7 @@ def render_scenes(scenes: Sequence[Path], wanted: Wanted, folder: Path) -> Itera
 
 
 def _kept_or_rendered(path: Path, scene: str, wanted: Wanted, place: Path) -> dict[str, Any]:
-    """Return a scene's row; files of an earlier run that are missing or changed are made again, the image only if it is one of them."""
+    """Return a scene's row; what an earlier run has kept is made again as far as it is missing or changed."""
     key = _key(scene, wanted)
     before = kept(place, key)
     if before is not None and not before.changed:
