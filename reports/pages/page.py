@@ -110,7 +110,7 @@ def headline(run: RunRecord) -> tuple[str, str]:
     else:
         who = "The one case" if judged == 1 else f"All {judged} cases"
         first = f"{who}{' judged' if judged < len(run.cases) else ''} came out as expected"
-    words = {"surprise": "not as declared", "error": "failed to run", "known": "rejected as declared"}
+    words = {"surprise": "not as declared", "error": "failed to run", "known": "as declared"}
     words["passed"] = "not rejected"
     counts = [f"{count[status]} {words.get(status, status)}" for status in STATUSES if count[status]]
     counts += [f"{len(twins) - missed} of {len(twins)} broken twins rejected"] if twins else []

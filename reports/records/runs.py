@@ -48,7 +48,7 @@ class Case:
     title: str
     kind: str
     status: Status
-    expected: Literal["not rejected", "rejected"]
+    expected: Literal["not rejected", "rejected", "inconclusive"]
     reason: str
     source: str
     reference: str

@@ -72,7 +72,8 @@ def number(
     x = float(array)
     inside = low < x < high if open_ends else low <= x <= high
     if not (np.isfinite(x) and inside):
-        raise InvalidValueError(name, rule, x, fix)
+        endless = np.isinf(x) and (high if x > 0 else low) == x and "finite" not in rule
+        raise InvalidValueError(name, f"{rule} and finite" if endless else rule, x, fix)
     return x
 
 

@@ -8,6 +8,7 @@ import pytest
 from fogproof import catalogue, verify
 from fogproof.analytic.proven.golden import golden_values
 from fogproof.errors import InvalidInputError
+from fogproof.reports import write_report
 
 FAST = ["free-path/surface/near", "transmittance/analog/thin", "fog/analog/haze"]
 
@@ -74,6 +75,25 @@ def test_an_expected_finding_is_known_and_a_surprise_in_either_direction_fails(m
     assert results["mended"].status == "surprise"
     assert verify.exit_code([results["known"]]) == 0
     assert verify.exit_code([results["mended"]]) == 1
+
+
+@pytest.mark.parametrize(
+    ("outcome", "status"), [("inconclusive", "known"), ("not rejected", "passed"), ("rejected", "rejected")]
+)
+def test_what_nobody_can_tell_is_declared(outcome, status):
+    assert verify.status_of(outcome, "inconclusive") == status
+
+
+def test_every_case_of_the_catalogue_can_stand_in_a_record(tmp_path):
+    """What a case declares is what records and pages know: a run of hours is not lost at its end."""
+    declared = {case.expected: case for case in catalogue.all_cases()}
+    assert set(declared) == {"not rejected", "rejected", "inconclusive"}
+    results = [
+        verify.Result(case, verify.status_of(case.expected, case.expected), None, "nobody ran it", 0.1)
+        for case in declared.values()
+    ]
+    record = verify.record(results, alpha=1e-6, seed=1, seconds=1.0, command="", started="2026-01-01T00:00:00Z")
+    write_report(record, tmp_path)
 
 
 def test_twins_are_run_on_demand_and_change_nothing_else():

@@ -7,7 +7,15 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from fogproof import InvalidValueError, check_convergence, check_estimator, check_streams, samples_for
+from fogproof import (
+    Interval,
+    InvalidValueError,
+    check_bound,
+    check_convergence,
+    check_estimator,
+    check_streams,
+    samples_for,
+)
 from fogproof.errors import SubjectError
 
 
@@ -57,3 +65,12 @@ def test_the_headline_of_convergence_is_about_the_most_samples(reference):
 def test_the_first_of_streams_that_overlap_is_named():
     verdict = check_streams(lambda i: np.random.Generator(np.random.PCG64(5).advance(i)), 64)
     assert "the first in streams 0 and 1" in str(verdict)
+
+
+def test_what_may_not_be_infinite_says_so():
+    with pytest.raises(InvalidValueError, match="variance must be > 0 and finite, got inf"):
+        samples_for(bias=0.1, variance=np.inf)
+    with pytest.raises(InvalidValueError, match="bound must be >= 0 and finite, got inf"):
+        check_bound(lambda x: x, np.inf, Interval(0.0, 1.0))
+    with pytest.raises(InvalidValueError, match=r"false_fail must lie in \(0, 1\), got inf"):
+        samples_for(bias=0.1, variance=1.0, false_fail=np.inf)

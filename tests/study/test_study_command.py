@@ -6,10 +6,16 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import get_args
 
 import jsonschema
+import numpy as np
 import pytest
 from study_fixtures import BALL, LIT, RAY, kinds, toml
+
+from fogproof.reports.records.studies import parse_study
+from fogproof.study.reaching import How, Reach
+from fogproof.study.speed import Times
 
 ROOT = Path(__file__).resolve().parents[2]
 TABLE = {
@@ -72,6 +78,18 @@ def test_the_record_is_what_the_schema_says(ran, tmp_path):
     assert again.returncode == 0
     record["scenes"][0]["estimators"][0]["speed"]["surprise"] = 1
     assert not check.is_valid(record)
+
+
+@pytest.mark.parametrize("how", get_args(How))
+def test_the_schema_knows_every_way_to_an_error(ran, how):
+    record = json.loads((ran[0] / "run" / "results.json").read_text())
+    check = jsonschema.Draft202012Validator(json.loads((ROOT / "schemas" / "study-1.json").read_text()))
+    record["scenes"][0]["estimators"][0]["speed"]["targets"][0]["how"] = how
+    told = next(row["all"] for scene in record["scenes"] for row in scene["answer"]["soonest"] if row["all"])
+    if Reach(0.01, how, "", None, Times(np.ones(2))).reached:
+        told["how"] = how
+    check.validate(record)
+    parse_study(record)
 
 
 def test_every_count_has_a_row(ran):

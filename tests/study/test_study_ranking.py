@@ -85,6 +85,28 @@ def test_who_is_first_to_several_errors_is_named_once():
     assert head.count("N0") + head.count("n0") == 1
 
 
+def test_the_least_time_to_each_error_is_named_whoever_was_first_before():
+    """One that is sooner to 0.1 %, though not shown to be, is named there: as the table and the figure say."""
+    wide = np.exp(0.3 * np.array([1, -1] * 4))
+    first, other = Timed("first", wide), Timed("other", 1.2 / wide)
+    for m, late in ((first, 3.0), (other, 1.5)):
+        m.reaches = (
+            m.reaches[0],
+            *(Reach(error, "measured", "", 1.0, Times(late * m.seconds)) for error in TARGETS[1:]),
+        )
+    said = ranked([first, other])
+    for row, at in zip(said["soonest"], range(3), strict=True):
+        least = min((first, other), key=lambda m: m.reaches[at].times.estimate.value)
+        assert (row["all"]["name"], row["all"]["seconds"]) == (least.name, least.reaches[at].times.estimate.value)
+    assert [row["all"]["name"] for row in said["soonest"]] == ["first", "other", "other"]
+    assert all(len(row["all"]["beside"]) == 1 for row in said["soonest"])
+    assert (
+        said["text"]
+        .split("\n")[0]
+        .endswith("; other is first, though not to be told from first: 0.1 % and 0.01 % in 1.8 s.")
+    )
+
+
 def test_the_table_of_the_soonest_says_what_the_sentences_say():
     """To each error: who, in what time, who may be as soon; of the unbiased apart, where the soonest of all is none."""
     rng = np.random.default_rng()

@@ -75,7 +75,7 @@ class SamplerCase:
     twin        the subject with a planted error; the catalogue has one for every case
     samples     most samples to draw
     weight      share of the run's false-alarm probability, relative to the other cases
-    expected    the outcome; "rejected" is a known finding, and `reason` says why
+    expected    the outcome; "rejected" is a known finding, "inconclusive" one that nobody can tell; `reason` says why
     needs       the extra that must be installed, "" if none
     by_name     whether it runs only when asked for by its name or its folder's
     origin      what names the file or package it comes from, "" for the catalogue; set where it is read

@@ -142,7 +142,6 @@ def quantities_of(
                 cause,
                 bounded,
                 own=(own / unit) ** 2,
-                ways=Declarable(other="bounds=(low, high)"),
                 # An error twice as large as any so far: of averages of rare hits, two hits are four times one in the square.
                 further=lambda low, high, c: (2 * max(high - value[c], value[c] - low) / unit) ** 2,
             )

@@ -40,19 +40,11 @@ def reaches(m: Measured, target: int) -> bool:
 
 
 def soonest(scene: Sequence[Measured], sure: float) -> list[Soonest | None]:
-    """Return who is soonest to each of `TARGETS`, None where nobody comes; times are compared with the confidence `sure`.
-
-    It is the same as to the error before, unless another is shown to be sooner.
-    """
+    """Return who is soonest to each of `TARGETS`, None where nobody comes; times are compared with the confidence `sure`."""
     found: list[Soonest | None] = []
-    before: Measured | None = None
     for target in range(len(TARGETS)):
         there = [m for m in scene if reaches(m, target)]
         first = min(there, key=lambda m: m.reaches[target].times.estimate.value, default=None)
-        if first is not None and before is not None and reaches(before, target):
-            ratio = before.reaches[target].relative_to(first.reaches[target], sure)
-            first = before if ratio is None or not ratio.low > 1 else first
-        before = first
         if first is None:
             found.append(None)
         else:

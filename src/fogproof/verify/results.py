@@ -47,9 +47,14 @@ class Result:
 
 
 def status_of(outcome: str, expected: str) -> Status:
-    """Return what a verdict's outcome means for a case that is expected to be "not rejected" or "rejected"."""
+    """Return what a verdict's outcome means for a case that is expected to come to another one.
+
+    Who declares that nothing can be told may be told something all the same: right is passed, wrong is rejected.
+    """
     if expected == "rejected":
         return "known" if outcome == "rejected" else "surprise"
+    if expected == outcome == "inconclusive":
+        return "known"
     return "passed" if outcome == "not rejected" else "rejected" if outcome == "rejected" else "inconclusive"
 
 
