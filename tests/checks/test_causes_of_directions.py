@@ -35,6 +35,12 @@ def window(u):
     return x / np.linalg.norm(x, axis=1, keepdims=True)
 
 
+def sky(rng, n):
+    """Directions, (n, 3), even in the solid angle of that square: of its points, taken as often as the cosine cubed."""
+    x = window(rng.random((16 * n + 99, 2)))
+    return x[rng.random(len(x)) < x[:, 2] ** 3][:n]
+
+
 def lit(power):
     """Return a pdf that goes with so many powers of the cosine on that square, whose normalisation is integrated."""
     nodes, weights = np.polynomial.legendre.leggauss(40)
@@ -90,7 +96,8 @@ CASES = {  # sampler, pdf, domain, dimensions; the cause and words of what expla
     ),
     "a plane's cosine": ((window, lit(-2), *SPHERE), "missing Jacobian", "the cosine is missing"),
     "a plane's distance": ((window, lit(-1), *SPHERE), "missing Jacobian", "the squared distance is missing"),
-    "a cosine upside down": ((window, lit(-4), *SPHERE), "missing Jacobian", "in the place of its reciprocal"),
+    "a plane's cosine twice": ((window, lit(-4), *SPHERE), "missing Jacobian", "the cosine is once too often"),
+    "solid angle for area": ((sky, lit(-3), UnitSphere(), None), "missing Jacobian", "one of the area of a plane"),
     "a frame's sign in 1/(s + z)": ((*skewed("inverse", hg(0.6)), *SPHERE), "skewed frame", "missing in 1/(s + z)"),
     "a frame's sign in its first axis": ((*skewed("first", COSINE), *SPHERE), "skewed frame", "in the first axis"),
     "a frame's sign in its second axis": ((*skewed("second", hg(0.6)), *SPHERE), "skewed frame", "in the second axis"),

@@ -129,7 +129,7 @@ def _searched(
             return "wrong probability of an atom", rejected["atom"].message
         if integral is not None:
             shaped = any(f.p_value is not None and f.cause in _STATISTICAL for f in rejected.values())
-            return _constant(subject, integral, cause, min(samples, SIZES[-1 if shaped else 0]), seed)
+            return _constant(subject, integral, cause, shaped, samples, seed)
     shown = contrasted(subject, samples, seed)
     if shown is None:
         return cause, ""
@@ -215,25 +215,30 @@ def _exponential(subject: Subject, samples: int, seed: int) -> str:
     return f"exp(pdf) integrates to {integral:.4f} +- {error:.1g}: it is the logarithm of a pdf"
 
 
-def _constant(subject: Subject, integral: Finding, cause: str, samples: int, seed: int) -> tuple[str, str]:
+def _constant(
+    subject: Subject, integral: Finding, cause: str, shaped: bool, samples: int, seed: int
+) -> tuple[str, str]:
     """Return what a wrong integral of the pdf comes from: a constant that can be named, or a pdf where nothing is sampled.
 
-    samples  that are looked at: as many as show that the pdf's shape is wrong too, where it is
+    shaped  whether a test rejects the shape of the pdf, which no constant factor changes
     """
-    setting = setting_of(subject, samples, seed)
+    setting = setting_of(subject, min(samples, SIZES[-1 if shaped else 0]), seed)
     if setting is None or integral.effect is None:
         return cause, ""
     base = setting.contrast.fit(setting.values)
-    if base.left > _MISFIT * math.sqrt(2 * base.freedom):
+    factor = integral.effect + 1
+    plain = base.left > _MISFIT * math.sqrt(2 * base.freedom)
+    if plain:
         found = likeliest(setting, base, list(holes.hypotheses(setting))[:-1])
         if found and explained_by(setting, found[0])[1] > _RIGHT and abs(found[0].fit.constant - 1) < 0.1:
             return (
                 "pdf outside the support",
                 f"the pdf is right where samples are, and not 0 elsewhere: {found[0].words}",
             )
+    if plain or shaped:
         told = explanation(subject, setting, base, samples, seed)
         if told is None:
-            return cause, ""
+            return cause, f"the pdf integrates to {factor:.6g}, and divided by that it still does not fit the samples"
         return cause if cause == "wrong measure" else told[0], told[1]
     error = integral.resolution.value if integral.resolution else 0.0
     more = {
@@ -244,7 +249,6 @@ def _constant(subject: Subject, integral: Finding, cause: str, samples: int, see
         albedo = float(np.asarray(subject.albedo))
         more |= {"the albedo": albedo, "1/albedo": 1 / albedo if albedo else math.inf}
     more = {name: value for name, value in more.items() if math.isfinite(value)}
-    factor = integral.effect + 1
     name = named_factor(factor, error, more)
     words = f"the samples fit the pdf but for a constant factor {factor:.6g}"
     return cause, f"{words}, that is {name}" if set(name) & set("piabth") else words

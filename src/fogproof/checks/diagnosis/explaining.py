@@ -39,6 +39,8 @@ _CLOSE = 12.0  # of log-likelihood that more samples may make up
 _FITS = 0.98  # the same of a law that has nothing to do with the claim
 _EXPLAINS = 0.95  # of what can be gained: a hypothesis that gains less is not told
 
+_PLACES = {"skipped band", "missing tail", "skipped region"}  # that no sample reaches
+
 _NUMBER = re.compile(r"[-+]?[0-9][-+0-9.e]*")
 
 
@@ -46,7 +48,8 @@ def explanation(subject: Subject, setting: Setting, base: Fit, samples: int, see
     """Return the class of error and the words of the one hypothesis that explains a misfit, None if none does.
 
     It must gain more than any general correction of the claim would, and leave little to such. Where another gains as much the
-    class is "shape", and the words name both.
+    class is "shape", and the words name both. What the samples refuse in its turn is said to be near, and its class is "shape" too,
+    except that a place without samples is one whatever the others are.
     """
     many, found = _candidates(subject, setting, base, samples, seed)
     if not found:
@@ -57,6 +60,12 @@ def explanation(subject: Subject, setting: Setting, base: Fit, samples: int, see
     if gain < _STANDS_OUT or share < needed or gain < unexplained(many.contrast, many.values) + _CLEARLY:
         return None
     near = [each for each in found[1:] if each.cause != best.cause and each.score > best.score - _CLEARLY]
+    if refused(many, best):
+        most = math.floor(1000 * share) / 10
+        told = (
+            f"near to, but not: {best.words} (this explains {most:.1f}% of the misfit, and what is left is no chance)"
+        )
+        return best.cause if best.cause in _PLACES else "shape", told
     told = f"{best.words} (this explains {share:.0%} of the misfit)"
     if not near:
         return best.cause, told
@@ -72,6 +81,13 @@ def explained_by(setting: Setting, found: Explained) -> tuple[float, float]:
     gain = found.score - setting.contrast.likelihood(setting.values)
     left = unexplained(setting.contrast, found.density(setting))
     return gain, gain / (gain + left) if gain > 0 else 0.0
+
+
+def refused(setting: Setting, found: Explained) -> bool:
+    """Return whether the samples differ by more than chance from a fitted hypothesis, in cells or by a general correction."""
+    if found.fit.left > _MISFIT * math.sqrt(2 * found.fit.freedom):
+        return True
+    return unexplained(setting.contrast, found.density(setting)) > _CLEARLY
 
 
 def _candidates(

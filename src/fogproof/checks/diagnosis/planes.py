@@ -16,11 +16,13 @@ _PER_CELL = 8  # samples in a cell, seen and expected, that tell a density
 _LEAN = 0.03  # mean length of directions that have a direction
 _ALONG = 0.03  # from z: such a mean is meant to be z
 _GRAZING = 0.05  # cosine to a plane's normal: a piece of a plane ends before
+_EDGE = 1e-6  # least density of a claim over its greatest: the cosine of a piece of a plane takes no power of it lower
 _POWERS = {
     3: "the cosine over the squared distance is missing",
-    2: "the squared distance is missing",
-    1: "the cosine is missing",
-    -1: "the cosine is in the place of its reciprocal, or once too often",
+    2: "the squared distance is missing, or the cosine is in the place of its reciprocal",
+    1: "the cosine is missing, or one power of the distance",
+    -1: "the cosine is once too often, or one power of the distance",
+    -3: "the squared distance over the cosine is once too often",
 }
 
 
@@ -52,9 +54,15 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
 
 
 def within(setting: Setting, normal: np.ndarray) -> bool:
-    """Return whether samples and claim are directions to a piece of a plane with such a normal, which nowhere grazes it."""
+    """Return whether samples and claim are directions to a piece of a plane with such a normal, which nowhere grazes it.
+
+    Such a piece has an edge. A lobe has none, though its skirts may be less than the least number.
+    """
     n, cosine = len(setting.contrast.x), setting.contrast.points @ normal
-    return bool(np.all(cosine[:n] > _GRAZING) and not np.any(setting.values[n:][cosine[n:] <= _GRAZING] > 0))
+    claim = setting.values[n:]
+    if np.any(cosine[:n] <= _GRAZING) or np.any(claim[cosine[n:] <= _GRAZING] > 0):
+        return False
+    return bool(np.min(claim, where=claim > 0, initial=np.inf) > _EDGE * claim.max())
 
 
 def _expected(setting: Setting) -> Iterator[np.ndarray]:
@@ -71,6 +79,8 @@ def _seen(k: int, normal: np.ndarray, fitted: int) -> Hypothesis:
     to = ", ".join(f"{c:.3f}" for c in normal)
     if k == max(_POWERS):
         words = f"these samples are even on the area of a plane of normal ({to}) where the pdf means solid angle"
+    elif k == min(_POWERS):
+        words = f"these samples are spread by solid angle where the pdf is one of the area of a plane of normal ({to})"
     else:
         words = f"these samples lie in a plane of normal ({to})"
     return Hypothesis(
