@@ -16,6 +16,7 @@ import numpy as np
 
 from fogproof.errors import FogproofError, UnsupportedError
 from fogproof.images.battery import Battery, ImageRelation, image_relations, planned
+from fogproof.images.kept import digest_of
 from fogproof.images.picture import read_picture
 from fogproof.images.scene_names import scene_names
 from fogproof.relations import Comparison, ImageSetting
@@ -132,7 +133,7 @@ class Commands:
         ).hexdigest()
         out, done = self.folder / f"{key}.exr", self.folder / f"{key}.json"
         images = (out, out.with_name(f"{out.name}.npy"))
-        kept = next((one for one in images if one.exists() and _finished(done)), None)
+        kept = next((one for one in images if _finished(done, one)), None)
         if kept is None:
             source = self.folder / f"{key}.scene.json"
             prepare_folder(self.folder, tuple(one.name for one in (*images, done, source)), self.run.force)
@@ -144,7 +145,8 @@ class Commands:
                 if found.refused:
                     raise UnsupportedError(found.reason, "scene")
                 raise RenderError(found.reason)
-            write_file(done, json.dumps(told | {"state": "finished"}))  # only what is whole is taken up again
+            told |= {"state": "finished", "digest": digest_of(found)}  # only what is whole is taken up again
+            write_file(done, json.dumps(told))
             kept = found
         picture = read_picture([kept], setting.scene.camera.film, setting.scene.channels)
         return np.asarray(picture.renders[0])
@@ -163,11 +165,11 @@ class Commands:
         }
 
 
-def _finished(done: Path) -> bool:
-    """Return whether a render's record says that the image beside it is whole."""
+def _finished(done: Path, image: Path) -> bool:
+    """Return whether an image is there as the record of its render says."""
     with contextlib.suppress(OSError, ValueError):
         told = json.loads(done.read_bytes())
-        return isinstance(told, dict) and told.get("state") == "finished"
+        return isinstance(told, dict) and told.get("state") == "finished" and told.get("digest") == digest_of(image)
     return False
 
 

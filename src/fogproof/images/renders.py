@@ -13,6 +13,7 @@ from typing import Any
 
 from fogproof.errors import FogproofError
 from fogproof.images.compare import compare_image
+from fogproof.images.kept import IMAGES, RECORD, begin, keep, kept
 from fogproof.images.report import WRITTEN as COMPARISON
 from fogproof.images.report import write_comparison
 from fogproof.images.scene_names import scene_names
@@ -24,7 +25,7 @@ from fogproof.scene.files import read_image_scene
 from fogproof.scene.to_json import to_json
 from fogproof.text import state, unfinished
 
-WRITTEN = (*COMPARISON, "row.json", "scene.json", "image.exr", "image.exr.npy")
+WRITTEN = (*COMPARISON, RECORD, "scene.json", *IMAGES)
 """The files of one scene, in its own folder."""
 
 
@@ -74,14 +75,21 @@ def render_scenes(scenes: Sequence[Path], wanted: Wanted, folder: Path) -> Itera
 
 
 def _kept_or_rendered(path: Path, scene: str, wanted: Wanted, place: Path) -> dict[str, Any]:
+    """Return a scene's row; what an earlier run has kept is made again as far as it is missing or changed."""
     key = _key(scene, wanted)
-    row = _before(place, key)
-    if row is not None:
+    before = kept(place, key)
+    if before is not None and not before.changed:
+        return {**before.row, "kept": True}
+    if before is not None and before.image is not None:
+        write_file(place / "scene.json", scene)
+        row = _compare(path, before.image, wanted, place) | {"seconds": before.row["seconds"]}
+        keep(place, key, row, WRITTEN)
         return {**row, "kept": True}
     started = time.perf_counter()
+    begin(place, key)
     row = _render(path, scene, wanted, place)
     row["seconds"] = f"{time.perf_counter() - started:.1f}"
-    write_file(place / "row.json", json.dumps({"format": "fogproof-row-1", "key": key, "row": row}, indent=1))
+    keep(place, key, row, WRITTEN)
     return row
 
 
@@ -101,25 +109,19 @@ def _key(scene: str, wanted: Wanted) -> str:
     return hashlib.blake2b(b"\0".join(parts), digest_size=16).hexdigest()
 
 
-_KEPT = ("not rejected", "rejected", "inconclusive", "not rendered")
-
-
-def _before(place: Path, key: str) -> dict[str, Any] | None:
-    try:
-        kept = json.loads((place / "row.json").read_text(encoding="utf-8"))
-        row: dict[str, Any] = kept["row"]
-        return row if kept["key"] == key and row["outcome"] in _KEPT else None  # what went wrong may go well now
-    except (OSError, ValueError, KeyError, TypeError):
-        return None
-
-
 def _render(path: Path, scene: str, wanted: Wanted, place: Path) -> dict[str, Any]:
     source = write_file(place / "scene.json", scene)
     out = render_one(wanted.renderer, source, place / "image.exr", wanted.values, wanted.seconds)
     if isinstance(out, RenderFailure):
         return _row(path.stem, "not rendered" if out.refused else "error", out.reason)
+    return _compare(path, out, wanted, place)
+
+
+def _compare(path: Path, image: Path, wanted: Wanted, place: Path) -> dict[str, Any]:
+    """Return the row of an image, and write its page."""
     try:
-        done = compare_image([out], read_image_scene(source), tolerance=wanted.tolerance, alpha=wanted.alpha)
+        scene = read_image_scene(place / "scene.json")
+        done = compare_image([image], scene, tolerance=wanted.tolerance, alpha=wanted.alpha)
         page = write_comparison(done, place)
     except FogproofError as error:
         return _row(path.stem, "error", str(error))

@@ -70,8 +70,11 @@ def write_comparison(done: ImageComparison, folder: Path) -> Path:
     }
     p_values = render(PValueHistogram(found.p_values), "p-values") if len(found.p_values) >= FEWEST else None
     if p_values is not None:
-        p_values.save(folder / "figures")
         record["p_values"] = p_values.words
+    # the record comes first: by it the other files are known as ours, wherever this is stopped
+    write_file(folder / "results.json", json.dumps(record | {"tiles": list(found.p_values)}, indent=1))
+    if p_values is not None:
+        p_values.save(folder / "figures")
     for name, content in pictures.items():
         write_picture(folder / "figures" / f"{name}.png", content)
     names = done.picture.names
@@ -82,7 +85,6 @@ def write_comparison(done: ImageComparison, folder: Path) -> Path:
         format_of("maps.exr").write(folder / "maps.exr", layers)
     except NotInstalledError:
         format_of("maps.npy").write(folder / "maps.npy", layers)
-    write_file(folder / "results.json", json.dumps(record | {"tiles": list(found.p_values)}, indent=1))
     known = done.verdict.resolution if done.verdict.outcome == "not rejected" else None
     said = str(known) if known else ""
     return write_image_page(record, pictures, folder, reach=REACH, resolution=said, p_values=p_values)
