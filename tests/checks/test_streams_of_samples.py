@@ -109,6 +109,12 @@ COARSE = {
     "radius of 20 bits": (
         UnitDisk(), lambda u: np.sqrt(coarse(u[:, :1], 20)) * directions(0 * u[:, 0], 2 * np.pi * u[:, 1])[:, :2], "r^2"),
     "one axis of 15 bits": (UnitSquare(), lambda u: np.stack([coarse(u[:, 0], 15), u[:, 1]], axis=-1), "x"),
+    "one axis of 9 bits": (UnitSquare(), lambda u: np.stack([coarse(u[:, 0], 9), u[:, 1]], axis=-1), "x"),
+    "one axis of 4 bits": (UnitSquare(), lambda u: np.stack([coarse(u[:, 0], 4), u[:, 1]], axis=-1), "x"),
+    "mu of 8 bits": (
+        UnitSphere(), lambda u: directions(1 - np.floor(256 * u[:, 0]) / 128, 2 * np.pi * u[:, 1]), "mu"),
+    "azimuth of 8 bits": (
+        UnitSphere(), lambda u: directions(2 * u[:, 0] - 1, np.floor(256 * u[:, 1]) * np.pi / 128), "phi"),
 }  # fmt: skip
 
 
@@ -121,6 +127,8 @@ def test_few_values_of_one_coordinate_are_found(name):
     assert verdict.cause == "coarse numbers", str(verdict)
     rejecting = {f.check for f in verdict.findings if f.outcome == "rejected"}
     assert f"different values of {axis}" in rejecting
+    bits = int("".join(filter(str.isdigit, name)))
+    assert bits > 10 or f"{axis} takes {1 << bits} values alone" in verdict.diagnosis, verdict.diagnosis
 
 
 def rejections(domain, sample, precision="float64", seeds=20):
@@ -142,6 +150,14 @@ def test_narrow_lobes_of_fine_numbers_are_no_fault(width):
         return np.stack([sine * np.cos(phi), sine * np.sin(phi), 1 - versine], axis=-1)
 
     assert rejections(UnitSphere(), sample) == 0
+
+
+@pytest.mark.parametrize("law", [
+    lambda u: 1 - u**40,  # most of it within rounding of 1
+    lambda u: np.where(u < 0.95, (np.floor(5 * u) + 0.5) / 5, u),  # lobes too narrow for rounding
+])  # fmt: skip
+def test_what_rounding_makes_one_is_no_fault(law):
+    assert rejections(UnitSquare(), lambda u: np.stack([law(u[:, 0]), u[:, 1]], axis=-1)) == 0
 
 
 def test_single_precision_is_no_fault_where_it_is_declared():

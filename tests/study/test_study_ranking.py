@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from fogproof.checks.statistics.tails import binomial_at_most
+from fogproof.study.measures import Measured
 from fogproof.study.ranking import ranked
 from fogproof.study.reaching import TARGETS, Reach
 from fogproof.study.speed import Times
@@ -22,16 +23,17 @@ class Timed:
     name: str
     seconds: np.ndarray
     status: str = "passed"
+    failed: int = 0
     record: dict[str, Any] = field(init=False)
 
     def __post_init__(self):
         self.cell = SimpleNamespace(name=self.name, points="random", method=SimpleNamespace(axis="samples"))
-        self.record = {"label": self.name, "speed": {}, "counts": []}
+        self.judged = SimpleNamespace(wrong=frozenset({"mean"}))
+        self.record = {"label": self.name, "speed": {}, "counts": [{"count": 4096, "rmse": 0.1}]}
         self.reaches = tuple(Reach(error, "measured", "", 1.0, Times(self.seconds)) for error in TARGETS)
 
-    @property
-    def unbiased(self):
-        return self.status == "passed"
+    unbiased = Measured.unbiased
+    waited_for = Measured.waited_for
 
 
 def equal(rng, n, scatter=0.05):
@@ -122,6 +124,39 @@ def test_the_table_of_the_soonest_says_what_the_sentences_say():
     assert [row["unbiased"]["waiting"] for row in rows] == [[], [], ["late"]]
     assert rows[0]["all"]["seconds"] == fast.reaches[0].times.estimate.value
     assert said["notes"] == said["text"].split("\n")[-len(said["notes"]) :]
+
+
+def not_there(name, how="not-reached", **more):
+    late = Timed(name, np.linspace(1, 1.1, ROUNDS), **more)
+    late.reaches = tuple(Reach(error, how, "", None, Times(1e-3 * late.seconds)) for error in TARGETS)
+    return late
+
+
+def test_what_is_to_be_mended_first_keeps_no_answer_open():
+    first = Timed("first", np.linspace(1, 1.1, ROUNDS))
+    others = [not_there("few"), not_there("wrong", status="rejected"), not_there("broken", failed=4096)]
+    said = ranked([first, *others])
+    assert [row["all"]["waiting"] for row in said["soonest"]] == [["few"]] * 3
+    assert "Failed at 4096: broken." in said["notes"]
+    assert ranked([first, *others[1:]])["text"].startswith("First is soonest: 1 %, 0.1 % and 0.01 % in ")
+
+
+@pytest.mark.parametrize(
+    ("scene", "end"),
+    [
+        ([not_there("a")], "; a comes nearest with 4096. Raise `samples`."),
+        ([not_there("a", "never")], ", and none will: the bias of a stays."),
+        (
+            [not_there("a", "never"), not_there("b", "rises"), not_there("c", "never")],
+            ", and none will: the bias of a and c stays and the error of b grows.",
+        ),
+        ([not_there("a", "never"), not_there("b")], "; a comes nearest with 4096. Raise `samples` for b."),
+        ([not_there("a", status="rejected")], "; a comes nearest with 4096."),
+        ([not_there("a", failed=4096)], "; a comes nearest with 4096."),
+    ],
+)
+def test_more_samples_are_asked_for_where_they_can_help(scene, end):
+    assert ranked(scene)["notes"][0] == f"None comes within 1 %{end}"
 
 
 def test_those_that_are_not_named_are_counted():

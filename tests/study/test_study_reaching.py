@@ -24,6 +24,8 @@ def reach(sizes, target, law=None, stays=0.0, smooth=False):
         ((0.1, 0.01, 0.001), 0.2, "less-than", 10),
         ((0.1, 0.01, 0.001), 1e-4, "not-reached", None),
         ((0.2, 0.05, 0.3), 0.1, "rises", None),  # it was below, and rises again
+        ((0.2, 0.3, 0.4), 0.1, "rises", None),  # none was near enough, and the error grows
+        ((0.2, 0.8, 0.4), 0.1, "not-reached", None),  # it falls again
         ((0.05, 0.2, 0.02), 0.1, "measured", 100 * 10 ** (np.log10(2) / 1)),  # the first time does not count
     ],
 )

@@ -36,6 +36,14 @@ MINE = """
     class Rising(Drawn):
         title, bias, bias_of, power, sd = "Rising bias", "by design", 1e-5, 1.0, 1e-6
 
+    class Breaking(Drawn):
+        title = "Breaking"
+
+        def draw(self, rng, n):
+            if n > 1000:
+                raise ValueError("too many")
+            return super().draw(rng, n)
+
     class Growing(Drawn):
         title = "Growing noise"
 
@@ -109,7 +117,7 @@ def test_what_declares_a_bias_is_never_called_unbiased(told):
 def test_only_what_stays_is_never_reached(told):
     assert hows(told, "Level") == ["never", "never", "never"]
     assert "never" not in hows(told, "Falling")
-    assert hows(told, "Rising")[:2] == ["rises", "rises"]
+    assert hows(told, "Rising") == ["rises", "rises", "rises"]
     assert "16 are nearer" not in entry(told, "Rising")["speed"]["targets"][0]["why"]  # 256 are near enough as well
     assert "256 are nearer" in entry(told, "Rising")["speed"]["targets"][0]["why"]
 
@@ -168,6 +176,23 @@ def test_one_count_tells_no_time_of_more_and_draws_no_fall(tmp_path):
     assert "Error against samples" not in page
     assert "of 1 estimators, both" not in page
     assert ">: 1 scene" not in page
+
+
+def test_what_cannot_be_drawn_is_named_and_not_waited_for(tmp_path):
+    record = run_study(read_study(written(tmp_path, ("Plain", "Breaking"))), tmp_path / "run")
+    scene = record["scenes"][0]
+    assert [t["how"] for t in scene["estimators"][1]["speed"]["targets"]] == ["not-reached"] * 3
+    assert {t["why"] for t in scene["estimators"][1]["speed"]["targets"]} == {"larger counts could not be drawn"}
+    assert "Failed at 4096: “Breaking”." in scene["answer"]["notes"]
+    assert all("spoken:Breaking" not in row["all"]["waiting"] for row in scene["answer"]["soonest"] if row["all"])
+    assert "add a larger" not in scene["answer"]["text"]
+
+
+def test_where_a_bias_stays_no_more_samples_are_asked_for(tmp_path):
+    record = run_study(read_study(written(tmp_path, ("Level",))), tmp_path / "run")
+    said = record["scenes"][0]["answer"]["text"]
+    assert said.startswith("None comes within 1 %, and none will: the bias of “Level bias” stays.")
+    assert "Raise" not in said + record["advice"]
 
 
 def test_few_realisations_are_no_heavy_tail(tmp_path):

@@ -100,19 +100,44 @@ def test_what_no_test_can_see_is_infeasible_and_what_changes_nothing_is_equal():
 
 def test_a_stopped_run_goes_on_and_other_settings_are_refused(tmp_path):
     log = ZooLog(tmp_path / "deep" / "zoo.jsonl", {"samples": 20_000})
-    assert log.read() == []
+    assert log.read() == ([], 0)
     row = run_bug(bug(lambda u: u[:, 0] ** 1.5), 20_000, 1e-6, 1)
     log.add(row)
-    assert log.read() == [row]
+    assert log.read() == ([row], 0)
     assert list(run_zoo([bug(np.exp)], samples=1000, alpha=1e-6, seed=1, workers=1, known=[row])) == []
     with pytest.raises(InvalidInputError, match="other settings"):
         ZooLog(log.path, {"samples": 1}).read()
-    log.path.write_text(log.path.read_text().replace(row.status, "splendid"))
-    with pytest.raises(InvalidInputError, match="'splendid' is none of killed"):
-        log.read()
-    log.path.write_text("{}\n{broken\n")
-    with pytest.raises(InvalidInputError, match="holds no rows"):
-        log.read()
+    for foreign in ("{}\n{broken\n", "[1]\n", "my notes\n"):
+        log.path.write_text(foreign)
+        with pytest.raises(InvalidInputError, match="holds no rows"):
+            log.read()
+
+
+def test_damaged_rows_are_run_again_and_the_others_kept(tmp_path):
+    """A machine that lost its power leaves zeros; one bad line is not worth hours of rows."""
+    log = ZooLog(tmp_path / "zoo.jsonl", {"samples": 20_000})
+    log.read()
+    row = run_bug(bug(lambda u: u[:, 0] ** 1.5), 20_000, 1e-6, 1)
+    log.add(row)
+    good = log.path.read_text()
+    line = good.splitlines()[1]
+    assert row.status in line
+    for damage in (
+        "nonsense",
+        "[" * 100_000,
+        "{}",
+        "3",
+        line.replace(row.status, "splendid"),
+        line[: len(line) // 2],
+        "a\0b",
+    ):
+        for text in (f"{good}{damage}\n", f"{good.splitlines()[0]}\n{damage}\n{line}\n"):
+            log.path.write_text(text)
+            assert log.read() == ([row], 1)
+    log.path.write_text(good + "\0" * 512)
+    assert log.read() == ([row], 0)
+    log.add(replace(row, name="another"))
+    assert [kept.name for kept in log.read()[0]] == [row.name, "another"]
 
 
 def test_the_goal_of_a_part_is_not_met_but_unfinished():

@@ -36,7 +36,7 @@ def few_values(name: str, subject: Subject, axis: str, pilot: np.ndarray, points
     t = coordinate(points)
     if subject.precision == "float32" or _finer(t, subject.roundoff):
         rounding += 4 * subject.roundoff  # a cosine may have been rounded before it became a point
-    return coarse_test(name, axis, t, rounding, subject.bits, alpha)
+    return coarse_test(name, axis, t, rounding, subject.bits, alpha, subject.quasi_random)
 
 
 def _finer(t: np.ndarray, roundoff: float) -> bool:

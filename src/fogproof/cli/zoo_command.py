@@ -80,7 +80,10 @@ def command(
         settings = {"samples": samples, "alpha": alpha, "others": others}
         log = ZooLog(folder / "zoo.jsonl", settings)
         names = {bug.name for bug in chosen}
-        rows = [row for row in log.read() if row.name in names]
+        found, damaged = log.read()
+        rows = [row for row in found if row.name in names]
+        if damaged:
+            say(f"{damaged} damaged lines of {log.path} are left out; what stood there is run again", err=True)
     seed = fresh_seed() if seed is None else seed
     width = max(len(bug.name) for bug in chosen)
     judge = None

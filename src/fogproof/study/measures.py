@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -28,12 +28,17 @@ _LEVEL = 0.2
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """A cell, judged and measured; `reaches` has the time to each of `TARGETS`, () where there is no curve to read it off."""
+    """A cell, judged and measured.
+
+    reaches   the time to each of `TARGETS`, () where there is no curve to read it off
+    failed    the least count that could not be drawn, 0 if none
+    """
 
     cell: Cell
     judged: Judged
     reaches: tuple[Reach, ...]
     record: dict[str, Any]
+    failed: int = 0
 
     @property
     def status(self) -> str:
@@ -48,8 +53,15 @@ class Measured:
         """Whether it came out unbiased as far as could be seen, and does not say otherwise."""
         return self.status == "passed"
 
+    @property
+    def waited_for(self) -> bool:
+        """Whether more samples may bring it nearer: what was rejected is to be mended first, as is what cannot be drawn."""
+        return self.status != "rejected" and not self.failed
 
-def measure(cell: Cell, levels: Sequence[Level], alpha: float, twin: Measured | None = None) -> Measured:
+
+def measure(
+    cell: Cell, levels: Sequence[Level], alpha: float, twin: Measured | None = None, failed: int = 0
+) -> Measured:
     """Measure a cell; every test has the false-alarm probability alpha. The twin of Sobol points are random ones."""
     levels = [level for level in levels if len(level.rows)]
     variance = cell.method.variance(cell.scene)
@@ -65,7 +77,7 @@ def measure(cell: Cell, levels: Sequence[Level], alpha: float, twin: Measured | 
     if order is not None and floor is None and stays > _LEVEL * errors[-1].value:
         order = None  # it falls to its bias, and no further
     curve = error_curve(cell, levels, errors, times, data, variance, judged, stays)
-    reaches = () if curve is None else reaches_of(curve, abs(value), error)
+    reaches = () if curve is None else reaches_of(replace(curve, ends=failed > 0), abs(value), error)
     record = {
         "name": cell.name,
         "kind": kind_of(cell.method),
@@ -89,7 +101,7 @@ def measure(cell: Cell, levels: Sequence[Level], alpha: float, twin: Measured | 
         "counts": [_count(cell, level, e, variance) for level, e in zip(levels, errors, strict=True)],
         "speed": _speed(cell, levels, times, reaches) if levels else None,
     }
-    measured = Measured(cell, judged, reaches, record)
+    measured = Measured(cell, judged, reaches, record, failed)
     record["status"] = measured.status
     return measured
 

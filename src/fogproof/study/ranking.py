@@ -86,14 +86,13 @@ def _notes(scene: Sequence[Measured], sure: float) -> list[str]:
     said = []
     firsts = [one.first for one in soonest(scene, sure) if one is not None]
     if not firsts:
-        nearest = min((m for m in scene if m.reaches), key=_key)
-        last = nearest.record["counts"][-1]
-        said = [
-            f"None comes within {TARGETS[_AT]:.0%}; {_inside(nearest)} comes nearest with {last['count']}. Raise `samples`."
-        ]
+        said.append(_none_comes([m for m in scene if m.reaches]))
     said += _compared(scene, sure)
     said += [_marched(m) for m in scene if m.cell.method.axis == "steps" and m.record["counts"]]
-    untimed = [_inside(m) for m in scene if m.reaches and m.reaches[_AT].untimed]
+    failed = sorted((m for m in scene if m.failed), key=lambda m: m.failed)
+    for count, those in groupby(failed, key=lambda m: m.failed):
+        said.append(f"Failed at {count}: {_listed([_inside(m) for m in those])}.")
+    untimed = [_inside(m) for m in scene if m.reaches and m.reaches[_AT].untimed and m.waited_for]
     if untimed:
         more = "what more samples would take these counts do not tell: add a larger one to `samples`"
         said.append(f"Of {_listed(untimed)} {more}.")
@@ -105,6 +104,22 @@ def _notes(scene: Sequence[Measured], sure: float) -> list[str]:
     if wrong:
         said.append(f"Rejected: {_listed(wrong)}.")
     return said
+
+
+def _none_comes(scene: Sequence[Measured]) -> str:
+    """Return who comes nearest to the first target, which nobody reaches, and whether more samples would help."""
+    ways = {how: [m for m in scene if m.reaches[_AT].how == how] for how in ("not-reached", "never", "rises")}
+    coming = [_inside(m) for m in ways["not-reached"] if m.waited_for]
+    if not ways["not-reached"]:
+        words = (("never", "the bias of {} stays"), ("rises", "the error of {} grows"))
+        why = [said.format(_listed([_inside(m) for m in ways[how]])) for how, said in words if ways[how]]
+        return f"None comes within {_percent(TARGETS[_AT])}, and none will: {_listed(why)}."
+    nearest = min(scene, key=_key)
+    count = nearest.record["counts"][-1]["count"]
+    told = f"None comes within {_percent(TARGETS[_AT])}; {_inside(nearest)} comes nearest with {count}."
+    if not coming:
+        return told
+    return f"{told} Raise `samples`{'' if len(coming) == len(scene) else f' for {_listed(coming)}'}."
 
 
 def _soonest(found: Sequence[Soonest | None], lead: str) -> list[str]:

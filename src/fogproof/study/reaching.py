@@ -31,6 +31,7 @@ class ErrorOverTime:
     errors    RMSE at each, bias included, in the unit of the quantity; intervals of no width where nothing is random
     stays     what no number of samples or steps takes away: a bias that was shown, rounding
     smooth    whether nothing is random: then an error may be small by a lucky crossing, and grow again
+    ends      whether more samples were asked for and could not be drawn
     times     of one estimate at each
     law       the variance of one realisation with its interval where the error is sqrt(variance / count); None elsewhere
     """
@@ -41,6 +42,14 @@ class ErrorOverTime:
     law: Estimate | None = None
     stays: float = 0.0
     smooth: bool = False
+    ends: bool = False
+
+    def nearer(self) -> int | None:
+        """Return the largest count that was surely nearer than the last, where the error grows to the last; None elsewhere."""
+        *before, last = self.errors
+        near = [int(n) for n, e in zip(self.counts, before, strict=False) if e.high < last.low]
+        falls = bool(before) and last.high < before[-1].low
+        return near[-1] if near and not falls and not self.smooth else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +59,7 @@ class Reach:
     error    relative to the reference
     how      "measured", between two counts; "less-than": the first count is better already, and its time is told;
              "extrapolated" beyond the last; "not-reached" by the last, whose time is told, or beyond it in a time that the counts
-             do not tell; "rises" where fewer samples are surely near enough and the last are not; "never"
+             do not tell; "rises" where fewer samples were surely nearer, and the last are not near enough; "never"
     why      of what was not reached, in words
     samples  or steps; None if not reached
     times    of one estimate with so many; at the last count, where that does not reach it
@@ -111,9 +120,9 @@ def reach_of(curve: ErrorOverTime, target: float, error: float, hidden: float = 
         first -= 1
     if first == len(size):
         said = f"{int(curve.counts[-1])} leave {size[-1] / target * error:.2g}"
-        near = [int(n) for n, e in zip(curve.counts, curve.errors, strict=True) if e.high <= target]
-        if near and curve.errors[-1].low > target and not curve.smooth:
-            return Reach(error, "rises", f"{said}, {near[-1]} are nearer", None, curve.times[-1])
+        nearer = curve.nearer()
+        if nearer is not None and curve.errors[-1].low > target:
+            return Reach(error, "rises", f"{said}, {nearer} are nearer", None, curve.times[-1])
         how = "never" if curve.stays > target else "not-reached"
         return Reach(error, how, said, None, curve.times[-1])
     if first == 0:
@@ -153,6 +162,8 @@ def _by_the_law(curve: ErrorOverTime, law: Estimate, target: float, error: float
     if needed <= curve.counts[0]:
         return Reach(error, "less-than", "", float(curve.counts[0]), curve.times[0])
     beyond = needed > curve.counts[-1]
+    if beyond and curve.ends:
+        return Reach(error, "not-reached", "larger counts could not be drawn", None, curve.times[-1])
     at = (time_beyond if beyond else time_at)(curve.counts, curve.times, needed)
     if isinstance(at, str):
         return Reach(error, "not-reached", at, None, curve.times[-1], untimed=True)

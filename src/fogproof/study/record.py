@@ -54,10 +54,14 @@ def make_record(
     """
     levels = levels_of(store.rows(), cells, batches)
     alpha = study.alpha / max(1, sum(map(tests_of, cells)))
+    failed: dict[int, int] = {}
+    for index, *_ in store.failures():
+        batch = batches[index]
+        failed[batch.cell] = min(batch.size, failed.get(batch.cell, batch.size))
     measured: list[Measured] = []
     for cell in cells:  # random points stand right before their Sobol twin
         twin = measured[-1] if cell.points == "sobol" else None
-        measured.append(measure(cell, levels[cell.index], alpha, twin))
+        measured.append(measure(cell, levels[cell.index], alpha, twin, failed.get(cell.index, 0)))
     scenes = [_scene(number, study, measured) for number in range(len(study.scenes))]
     failures = [_failure(row, cells, batches) for row in store.failures()]
     done = len(store.done())

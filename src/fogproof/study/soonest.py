@@ -15,7 +15,7 @@ class Soonest:
     """The one that comes to an error in the least time, by `reach`.
 
     beside   those whose time may be as little
-    waiting  those that had not come so near by their last count, which took less time: they may be sooner
+    waiting  those that had not come so near by their last count and may be sooner with more; not what is to be mended first
     """
 
     first: Measured
@@ -71,5 +71,5 @@ def _beside(scene: Sequence[Measured], first: Measured, target: int, sure: float
 
 def _may_be_sooner(scene: Sequence[Measured], first: Measured, target: int) -> tuple[Measured, ...]:
     least = first.reaches[target].times.estimate.value
-    waiting = [m for m in scene if m.reaches and m.reaches[target].how == "not-reached"]
+    waiting = [m for m in scene if m.reaches and m.reaches[target].how == "not-reached" and m.waited_for]
     return tuple(m for m in waiting if m.reaches[target].times.estimate.value < least)

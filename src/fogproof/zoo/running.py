@@ -145,24 +145,45 @@ class ZooLog:
     path: Path
     settings: dict[str, Any]
 
-    def read(self) -> list[ZooRow]:
-        """Return the rows of earlier runs."""
-        lines = whole_lines(read_text(self.path, "the rows")) if self.path.exists() else []
+    def read(self) -> tuple[list[ZooRow], int]:
+        """Return the rows of earlier runs, and how many lines are damaged: what stood there is run again.
+
+        A machine that lost its power may leave bytes of zero; a file whose head is none of ours is refused.
+        """
+        lines = [text for line in self._lines() if (text := line.strip("\0"))]
         if not lines:
             add_line(self.path, self.settings)
-            return []
-        try:
-            first, *rest = map(json.loads, lines)
-            rows = [ZooRow(**{**row, "causes": tuple(row["causes"]), "checks": tuple(row["checks"])}) for row in rest]
-            if strange := [row.status for row in rows if row.status not in get_args(Status)]:
-                raise ValueError(f"{strange[0]!r} is none of {', '.join(get_args(Status))}")
-        except (ValueError, TypeError, KeyError, RecursionError) as error:
-            raise InvalidInputError(f"{self.path} holds no rows of a zoo: {error}; delete it", str(self.path)) from None
+            return [], 0
+        first, *rest = map(_read, lines)
+        if not isinstance(first, dict) or not self.settings.keys() <= first.keys():
+            what = f"{self.path} holds no rows of a zoo; choose another folder, or delete it"
+            raise InvalidInputError(what, str(self.path))
         if first != self.settings:
             what = f"{self.path} is of other settings, {first}; choose another folder, or delete it"
             raise InvalidInputError(what, str(self.path))
-        return list({row.name: row for row in rows}.values())
+        rows = [row for line in rest if (row := _row(line)) is not None]
+        return list({row.name: row for row in rows}.values()), len(rest) - len(rows)
+
+    def _lines(self) -> list[str]:
+        return whole_lines(read_text(self.path, "the rows")) if self.path.exists() else []
 
     def add(self, row: ZooRow) -> None:
         """Write one row."""
         add_line(self.path, asdict(row))
+
+
+def _read(line: str) -> Any:
+    """Return what a line of JSON holds, None if it is none."""
+    try:
+        return json.loads(line)
+    except (ValueError, RecursionError):
+        return None
+
+
+def _row(held: Any) -> ZooRow | None:
+    """Return the row that a line holds, None if it holds none."""
+    try:
+        row = ZooRow(**{**held, "causes": tuple(held["causes"]), "checks": tuple(held["checks"])})
+    except (TypeError, KeyError):
+        return None
+    return row if row.status in get_args(Status) and isinstance(row.name, str) else None

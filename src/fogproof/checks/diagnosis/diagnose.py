@@ -82,20 +82,22 @@ def _explained(subject: Subject, cause: str, findings: Sequence[Finding], sample
     often = 0.0 if all(whole_columns(subject.domain)) else sum(rest.atoms.values()) - sum(subject.atoms.values())
     if named == "clamped" or (named == "atom" and often > _MOSTLY):  # with what lies beyond: all of its misfit
         return named, words
-    if named == "sheet" and (told := _beside_a_sheet(rest, words, samples, seed)):
+    shown = setting_of(subject, min(samples, SIZES[0]), seed) if cause == _COARSE else None
+    few = few_values(shown.contrast) if shown else ""
+    if named == "sheet" and not few and (told := _beside_a_sheet(rest, words, samples, seed)):
         return told
     if cause == _COARSE:
-        return cause, ""
+        return cause, few
     if cause != "atom" and cause not in _SHARES:
         return _searched(subject, cause, findings, samples, seed)
     own = cause if cause in _SHARES else named or cause
-    shown = contrasted(rest, samples, seed)
-    if shown is None or shown[1].left < _MISFIT * math.sqrt(2 * shown[1].freedom):
+    beside = contrasted(rest, samples, seed)
+    if beside is None or beside[1].left < _MISFIT * math.sqrt(2 * beside[1].freedom):
         return own, words
     other, why = _searched(rest, "shape", findings, samples, seed)
     if cause in _SHARES:
         return other, f"{why}; " * bool(why) + "and the share of samples that are given up is another one"
-    if not why and (few := few_values(shown[0].contrast)):
+    if not why and (few := few_values(beside[0].contrast)):
         return "coarse numbers", few
     if not why and not words:  # of one coordinate alone: no point comes again, and nothing else explains it
         return own, ""

@@ -23,6 +23,13 @@ KEPT = 1 << 18
 
 _WINDOW = 32  # neighbours on either side that tell how far apart values are
 _EQUAL = 1e-6  # of that distance
+_SAME = 1e-13  # of the span of all values
+_OFTEN, _SEVERAL, _NEARLY_ALL = (
+    8,
+    8,
+    0.9,
+)  # samples of a number, such numbers, and the share of all samples that they have
+_APART = 1e3  # times what rounding does: single numbers, and none of its own steps
 _CERTAIN = 0.999
 
 _SLACK = 8.0  # how much coarser than the result the numbers inside a sampler may be
@@ -171,13 +178,34 @@ def _kind_of_repetition(prints: np.ndarray) -> tuple[str, str]:
     return f"{several} points come {extra / several + 1:.2g} times on average", "atom"
 
 
-def coarse_test(name: str, label: str, t: np.ndarray, rounding: float, bits: int, alpha: float) -> Finding:
+def _between_values(t: np.ndarray, rounding: float) -> np.ndarray:
+    """Return how far apart sorted values (n,) are where they are several single numbers, each taken often; 0 where they are not.
+
+    Neighbours that are all equal do not tell how far apart values are, the next number does. Fewer numbers may be lobes narrower
+    than rounding, which are no fault.
+    """
+    grain = _SLACK * rounding + _SAME * float(t[-1] - t[0])
+    last = np.append(np.flatnonzero(np.diff(t) > grain), len(t) - 1)
+    first = np.append(0, last[:-1] + 1)
+    count = last - first + 1
+    before, after = np.append(first[:1], last[:-1]), np.append(first[1:], last[-1:])
+    apart = 0.5 * (t[after] - t[before])
+    single = (count >= _OFTEN) & (t[last] - t[first] <= grain) & (apart > _APART * grain)
+    if np.count_nonzero(single) < _SEVERAL or count[single].sum() < _NEARLY_ALL * len(t):
+        return np.zeros(len(t))
+    return np.repeat(np.where(single, apart / count, 0.0), count)
+
+
+def coarse_test(
+    name: str, label: str, t: np.ndarray, rounding: float, bits: int, alpha: float, grid: bool = False
+) -> Finding:
     """Test that one coordinate takes as many different values as its samples are: numbers of few bits do not.
 
     t         (n,) values of a coordinate whose law is continuous, in any unit; neighbours closer than 1e-6 of the spacing around
               them count as equal
     rounding  what rounding of the points can change about a value
     bits      of the uniforms that the sampler uses
+    grid      whether the points may be those of a grid, of which many share a coordinate
     """
     n = len(t)
     if n < _WINDOW * 4:
@@ -186,6 +214,8 @@ def coarse_test(name: str, label: str, t: np.ndarray, rounding: float, bits: int
     gap = np.diff(t)
     ends = np.clip(np.arange(n - 1)[:, None] + (-_WINDOW, _WINDOW), 0, n - 1)
     spacing = (t[ends[:, 1]] - t[ends[:, 0]]) / (ends[:, 1] - ends[:, 0])
+    if not grid:
+        spacing = np.maximum(spacing, _between_values(t, rounding)[:-1])
     seen = int(np.count_nonzero(gap <= _EQUAL * spacing))
     with np.errstate(divide="ignore", invalid="ignore"):
         merged = np.where(spacing > 0, np.minimum(2 * rounding / spacing, 1.0), 1.0 if rounding > 0 else 0.0)
