@@ -1,4 +1,4 @@
-"""A parent may have left SIGCHLD ignored, as daemons do: the exit codes of what is started are heard all the same, or nothing is started."""
+"""A parent may have left SIGCHLD ignored, as daemons do: exit codes are heard all the same, or nothing is started."""
 
 import os
 import signal
