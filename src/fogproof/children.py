@@ -50,7 +50,7 @@ class Child:
 def start(command: Sequence[str], environment: Mapping[str, str] | None = None, **pipes: Any) -> Child:
     """Start a program; OSError or ValueError where there is none. `pipes` are those of `subprocess.Popen`.
 
-    Where this process ignores SIGCHLD nothing is started: the system keeps no exit codes, and Python takes every end for a good one.
+    Where this process ignores SIGCHLD nothing is started: without exit codes Python takes every end for a good one.
     """
     if os.name == "posix" and signal.getsignal(signal.SIGCHLD) is signal.SIG_IGN:
         fix = "signal.signal(signal.SIGCHLD, signal.SIG_DFL) hears it"
