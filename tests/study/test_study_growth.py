@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from fogproof.study.growth import power_at, time_at, time_beyond
+from fogproof.study.growth import least_beyond, power_at, time_at, time_beyond
 from fogproof.study.speed import Times
 
 COUNTS = np.array([100, 1000, 10_000])
@@ -52,6 +52,20 @@ def test_beyond_the_last_the_time_is_right_or_none(law):
         else:
             assert law is line or factor <= 10
             assert inside(at, law(factor * COUNTS[-1]))
+
+
+@pytest.mark.parametrize("law", [line, square, root])
+def test_no_time_beyond_the_last_is_below_the_least(law):
+    for factor in (1.5, 10, 1e3, 1e6):
+        least = least_beyond(COUNTS, times(law), factor * COUNTS[-1])
+        assert times(law)[-1].estimate.value <= least <= law(factor * COUNTS[-1])
+        assert law is square or least > 0.7 * law(factor * COUNTS[-1])
+
+
+def test_samples_lost_in_the_noise_of_the_call_bound_nothing():
+    one = times(lambda n: 7e-5 + 2e-8 * n, np.array([1, 2, 4]))
+    assert least_beyond(np.array([1, 2, 4]), one, 1000) == one[-1].estimate.value
+    assert least_beyond(COUNTS[:1], times(line)[:1], 1000) == times(line)[0].estimate.value
 
 
 def test_one_count_tells_no_time_of_more():

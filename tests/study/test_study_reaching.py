@@ -1,10 +1,13 @@
 """An error is reached where the measured curve stays below it from then on; times are read off between the measured counts."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
 from fogproof.study.convergence import Estimate
-from fogproof.study.reaching import ErrorOverTime, reach_of
+from fogproof.study.error_curve import reaches_of
+from fogproof.study.reaching import ErrorOverTime, Reach, reach_of
 from fogproof.study.speed import Times
 
 COUNTS = np.array([10, 100, 1000])
@@ -36,6 +39,42 @@ def test_the_error_stays_below_from_there_on(sizes, target, how, samples):
 
 def test_a_lucky_crossing_of_what_is_not_random_is_no_error_that_rises():
     assert reach((0.2, 0.05, 0.3), 0.1, smooth=True).how == "not-reached"
+
+
+def flat(each, noise=0.02):
+    """Return the time of calls that cost 100 us, and so much a sample."""
+    return [Times((1e-4 + each * n) * np.exp(noise * np.roll([1, -1, 2, -2] * 2, k))) for k, n in enumerate(COUNTS)]
+
+
+@pytest.mark.parametrize("each", [1e-9, 1e-8, 2e-8, 4e-8, 1e-7, 1e-6])
+@pytest.mark.parametrize("samples", [5, 50, 900, 2000, 1e6])
+def test_times_to_smaller_errors_are_no_less(each, samples):
+    """Nor are their low ends: whether a time was read off, told beyond the last count, or only bounded there."""
+    variance = samples * 0.01**2
+    errors = [Estimate(e, e, e) for e in np.sqrt(variance / COUNTS)]
+    law = Estimate(variance, variance, variance)
+    found = reaches_of(ErrorOverTime(COUNTS, errors, flat(each), law), 1.0, 0.0)
+    for larger, smaller in pairwise(found):
+        assert smaller.at_least >= larger.at_least
+        if smaller.reached and larger.reached:
+            assert smaller.seconds.value >= larger.seconds.value
+            assert smaller.seconds.low <= smaller.seconds.value <= smaller.seconds.high
+
+
+def test_how_many_samples_are_needed_bounds_the_time_that_is_not_told():
+    """Samples of 10 ns in calls of 100 us: ten thousand million of them take minutes, however unsure the slope."""
+    variance = 1e10 * 0.0001**2
+    errors = [Estimate(e, e, e) for e in np.sqrt(variance / COUNTS)]
+    law = Estimate(variance, 0.9 * variance, 1.1 * variance)
+    found = reaches_of(ErrorOverTime(COUNTS, errors, flat(1e-8), law), 1.0, 0.0)[-1]
+    assert found.how == "not-reached"
+    assert 0.1 * 1e10 * 1e-8 < found.at_least < 1e10 * 1e-8
+
+
+def test_a_smaller_error_that_noise_makes_sooner_takes_as_long_as_the_larger():
+    late, soon = (Reach(0.01, "measured", "", 10.0, Times(time * np.array([1, 1.1] * 4))) for time in (1.0, 0.9))
+    assert soon.after(late).seconds == late.seconds
+    assert late.after(soon).seconds == late.seconds
 
 
 def test_what_no_count_takes_away_is_never_reached():

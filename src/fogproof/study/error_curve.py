@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -100,8 +99,5 @@ def reaches_of(curve: ErrorOverTime, value: float, hidden: float) -> tuple[Reach
     reaches: list[Reach] = []
     for error in TARGETS:
         reach = reach_of(curve, error * value, error, hidden)
-        sooner = reach.reached and reaches and reach.times.estimate.value < reaches[-1].times.estimate.value
-        reaches.append(
-            replace(reach, times=reaches[-1].times) if sooner else reach
-        )  # a smaller error takes no less time
+        reaches.append(reach.after(reaches[-1]) if reaches else reach)
     return tuple(reaches)

@@ -69,6 +69,22 @@ def time_beyond(counts: np.ndarray, times: Sequence[Times], count: float) -> Tim
     return TimeAt(Times(found), bend)
 
 
+def least_beyond(counts: np.ndarray, times: Sequence[Times], count: float) -> float:
+    """Return what a count beyond the last takes at least: no further sample is cheaper than those from the first count to the last.
+
+    Where the time was shown to grow by a lesser power of the count, it goes on like that.
+    """
+    k = len(counts) - 1
+    last = times[k].estimate.value
+    if k == 0:
+        return last
+    a, b = _same_rounds(times[0], times[k])
+    power = min(_power(counts, times, k), 1.0)
+    low, high = (float(counts[i]) ** power for i in (0, k))
+    least, _ = _interval(b + (count**power - high) / (high - low) * (b - a))
+    return max(least, last)
+
+
 def power_at(counts: np.ndarray, times: Sequence[Times], count: float) -> float:
     """Return the power of the count with which the time grows around a count, 0 at least."""
     if len(counts) == 1:

@@ -213,5 +213,5 @@ def _target(reach: Reach) -> dict[str, Any]:
     time = reach.seconds
     told = {"error": reach.error, "how": reach.how, "why": reach.why, "samples": reach.samples}
     if not reach.reached:
-        return {**told, "seconds": None, "low": time.value, "high": None}
+        return {**told, "seconds": None, "low": reach.at_least, "high": None}
     return {**told, "seconds": time.value, "low": time.low, "high": time.high}

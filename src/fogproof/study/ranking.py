@@ -92,7 +92,10 @@ def _notes(scene: Sequence[Measured], sure: float) -> list[str]:
     failed = sorted((m for m in scene if m.failed), key=lambda m: m.failed)
     for count, those in groupby(failed, key=lambda m: m.failed):
         said.append(f"Failed at {count}: {_listed([_inside(m) for m in those])}.")
-    untimed = [_inside(m) for m in scene if m.reaches and m.reaches[_AT].untimed and m.waited_for]
+    at = [soonest(some, sure)[_AT] for some in (scene, [m for m in scene if m.unbiased])]
+    waiting = [m for one in at if one is not None for m in one.waiting]
+    late = [m for m in scene if m.reaches and m.reaches[_AT].untimed and m.waited_for]
+    untimed = [_inside(m) for m in late if m in waiting or at[0] is None]
     if untimed:
         more = "what more samples would take these counts do not tell: add a larger one to `samples`"
         said.append(f"Of {_listed(untimed)} {more}.")

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
 from fogproof.study.convergence import CONFIDENCE, Estimate, Z, deviations
-from fogproof.study.growth import power_at, time_at, time_beyond
+from fogproof.study.growth import least_beyond, power_at, time_at, time_beyond
 from fogproof.study.speed import Times, scaled
 
 TARGETS = (0.01, 0.001, 0.0001)
@@ -65,6 +65,7 @@ class Reach:
     times    of one estimate with so many; at the last count, where that does not reach it
     untimed  whether so many samples are known to do, and their time alone is not known
     noise    how far the logarithm of the time reaches below and above because of the error's own interval
+    least    what is known to be needed in any case: the time of a larger error, or of so many samples
     """
 
     error: float
@@ -74,6 +75,7 @@ class Reach:
     times: Times
     noise: tuple[float, float] = (0.0, 0.0)
     untimed: bool = False
+    least: float = 0.0
 
     @property
     def reached(self) -> bool:
@@ -84,9 +86,19 @@ class Reach:
     def seconds(self) -> Estimate:
         """The time with its interval, which begins at 0 where the first count is better already."""
         own = self.times.estimate
-        if self.how == "less-than":
-            return Estimate(own.value, 0.0, scaled(own.value, *_wider(own, self.noise)).high)
-        return scaled(own.value, *_wider(own, self.noise))
+        time = scaled(own.value, *_wider(own, self.noise))
+        low = 0.0 if self.how == "less-than" else max(time.low, min(self.least, own.value))
+        return Estimate(own.value, low, time.high)
+
+    @property
+    def at_least(self) -> float:
+        """The least time that the error may take."""
+        return self.seconds.low if self.reached else max(self.times.estimate.value, self.least)
+
+    def after(self, larger: Reach) -> Reach:
+        """Return the same where a larger error takes so much: a smaller one takes no less, nor may it."""
+        sooner = self.reached and larger.reached and self.times.estimate.value < larger.times.estimate.value
+        return replace(self, times=larger.times if sooner else self.times, least=max(self.least, larger.at_least))
 
     def relative_to(self, other: Reach, confidence: float = CONFIDENCE) -> Estimate | None:
         """Return how many times as long it takes as another does; None where either is not known."""
@@ -158,7 +170,7 @@ def _noise(curve: ErrorOverTime, a: int, b: int, share: float) -> tuple[float, f
 
 
 def _by_the_law(curve: ErrorOverTime, law: Estimate, target: float, error: float, hidden: float) -> Reach:
-    needed = law.value / target**2
+    needed, unsure = law.value / target**2, 2 * hidden / target
     if needed <= curve.counts[0]:
         return Reach(error, "less-than", "", float(curve.counts[0]), curve.times[0])
     beyond = needed > curve.counts[-1]
@@ -166,8 +178,8 @@ def _by_the_law(curve: ErrorOverTime, law: Estimate, target: float, error: float
         return Reach(error, "not-reached", "larger counts could not be drawn", None, curve.times[-1])
     at = (time_beyond if beyond else time_at)(curve.counts, curve.times, needed)
     if isinstance(at, str):
-        return Reach(error, "not-reached", at, None, curve.times[-1], untimed=True)
-    unsure = 2 * hidden / target
+        least = least_beyond(curve.counts, curve.times, max(law.low / target**2 * math.exp(-unsure), curve.counts[-1]))
+        return Reach(error, "not-reached", at, None, curve.times[-1], untimed=True, least=least)
     grows = power_at(curve.counts, curve.times, needed)
     below = grows * (math.log(law.value / law.low) + unsure) if law.low > 0 else math.inf
     above = grows * (math.log(law.high / law.value) + unsure)

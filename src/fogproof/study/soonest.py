@@ -72,4 +72,4 @@ def _beside(scene: Sequence[Measured], first: Measured, target: int, sure: float
 def _may_be_sooner(scene: Sequence[Measured], first: Measured, target: int) -> tuple[Measured, ...]:
     least = first.reaches[target].times.estimate.value
     waiting = [m for m in scene if m.reaches and m.reaches[target].how == "not-reached" and m.waited_for]
-    return tuple(m for m in waiting if m.reaches[target].times.estimate.value < least)
+    return tuple(m for m in waiting if m.reaches[target].at_least < least)
