@@ -8,6 +8,7 @@ import json
 import os
 import re
 import struct
+import sys
 import zlib
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -122,11 +123,17 @@ def _is_ours(path: Path) -> bool:
 
 
 def require_other(output: str | Path, *sources: str | Path) -> None:
-    """Refuse to write a file that is read."""
-    for source in sources:
-        with contextlib.suppress(OSError):  # one of them is not there
-            if os.path.samefile(output, source):
-                raise InvalidInputError(f"{output} is the file that is read; write to another", str(output))
+    """Refuse to write a file that is read; the source "-" is what stdin reads."""
+    if any(_is_same(output, source) for source in sources):
+        raise InvalidInputError(f"{output} is the file that is read; write to another", str(output))
+
+
+def _is_same(output: str | Path, source: str | Path) -> bool:
+    with contextlib.suppress(OSError, ValueError, AttributeError):  # one of them is not there, or no file
+        if source != "-":
+            return os.path.samefile(output, source)
+        return os.path.isfile(output) and os.path.samestat(os.stat(output), os.fstat(sys.stdin.fileno()))
+    return False
 
 
 def write_output(output: str | Path, content: str | bytes, *sources: str | Path) -> Path:

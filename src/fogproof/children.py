@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import atexit
 import contextlib
+import errno
 import os
 import secrets
 import shutil
@@ -47,7 +48,13 @@ class Child:
 
 
 def start(command: Sequence[str], environment: Mapping[str, str] | None = None, **pipes: Any) -> Child:
-    """Start a program; OSError or ValueError where there is none. `pipes` are those of `subprocess.Popen`."""
+    """Start a program; OSError or ValueError where there is none. `pipes` are those of `subprocess.Popen`.
+
+    Where this process ignores SIGCHLD nothing is started: without exit codes Python takes every end for a good one.
+    """
+    if os.name == "posix" and signal.getsignal(signal.SIGCHLD) is signal.SIG_IGN:
+        fix = "signal.signal(signal.SIGCHLD, signal.SIG_DFL) hears it"
+        raise ChildProcessError(errno.ECHILD, f"this process ignores SIGCHLD, and would not hear how it ends; {fix}")
     word = secrets.token_hex(16)
     told = {**(os.environ if environment is None else environment)}
     told[WORDS] = f"{words_of(told)} {word}"

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 def main() -> None:
     """Run the command line; a signal before it listens, or after, ends the process with one word and the usual code."""
     try:
+        leave_at_the_end()
         prepare()
         from fogproof.cli import main as command_line
     except (Exception, SystemExit) as error:  # a module may end the process with 0, which would be a verdict
@@ -26,14 +27,25 @@ def main() -> None:
         command_line()
 
 
+def leave_at_the_end() -> None:
+    """Begin anew without PYTHONINSPECT: Python would stay where we end, and end with a code of its own."""
+    if os.environ.pop("PYTHONINSPECT", "") and sys.flags.inspect and os.name == "posix":
+        os.execv(sys.executable, sys.orig_argv)
+
+
 def prepare() -> None:
-    """Listen to signals while modules are loaded, and mind the system's limits."""
+    """Listen to signals while modules are loaded, hear how children end, and mind the system's limits."""
     import signal  # here, where a file in its place can be named
 
     for name in ("SIGINT", "SIGTERM", "SIGHUP", "SIGXCPU"):
         number = getattr(signal, name, None)
         if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, _stop)
+    child = getattr(signal, "SIGCHLD", None)
+    if child is not None and signal.getsignal(child) is signal.SIG_IGN:
+        signal.signal(
+            child, signal.SIG_DFL
+        )  # or the system keeps no exit code of what we start, and Python takes it for 0
     mind_limits()
 
 

@@ -30,7 +30,8 @@ _NEWS, _LATE = pytest.StashKey[deque[tuple[Any, ...]]](), pytest.StashKey[list[A
 """What checks have found and no report has told yet; and what came after the last report. See `checks`."""
 _CRASHED = pytest.StashKey[list[str]]()
 """Tests in which a worker of xdist ended."""
-_FAILED, _NOTHING = 1, 5  # pytest.ExitCode
+_SESSION = pytest.StashKey[pytest.Session]()
+_FAILED, _USAGE, _NOTHING = 1, 4, 5  # pytest.ExitCode
 _MARKER = (
     "fogproof(weight=1, calls=None, inconclusive='fail'): this test's share of the session's false-alarm probability relative to "
     "other tests; how many checks share it equally (None: the k-th gets 1/(k (k + 1)) of it); whether an inconclusive verdict "
@@ -199,8 +200,11 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
     late += _drained(config.stash[_NEWS])
     if hasattr(config, "workeroutput"):
         config.workeroutput["fogproof"] = late
-    if session.exitstatus in (0, _NOTHING) and (any(why for *_, why in late) or _tried_again(config)):
+    if session.exitstatus in (0, _NOTHING) and (
+        any(why for *_, why in late) or _tried_again(config) or _failed(config)
+    ):
         session.exitstatus = _FAILED
+    config.stash[_SESSION] = session
 
 
 def _reports(config: pytest.Config, *kinds: str) -> list[Any]:
@@ -212,6 +216,11 @@ def _reports(config: pytest.Config, *kinds: str) -> list[Any]:
 def _tried_again(config: pytest.Config) -> list[str]:
     """Return what a test that was run again had been rejected for: under one seed the same try has one answer."""
     return [why for report in _reports(config, "rerun") for *_, why in getattr(report, "fogproof", ()) if why]
+
+
+def _failed(config: pytest.Config) -> bool:
+    """Whether a verdict has failed a test; the session fails with it, though `pytest.exit(returncode=0)` may have ended it."""
+    return any(why for report in _reports(config, "failed", "error") for *_, why in getattr(report, "fogproof", ()))
 
 
 def pytest_terminal_summary(terminalreporter: Any, exitstatus: int, config: pytest.Config) -> None:
@@ -227,6 +236,7 @@ def pytest_terminal_summary(terminalreporter: Any, exitstatus: int, config: pyte
     lost, crashed = [why for *_, why in late if why], config.stash[_CRASHED]
     if not told and not folder and not lost:
         return
+    from fogproof.errors import FogproofError
     from fogproof_pytest.summary import summary, written
 
     terminalreporter.section("fogproof")
@@ -244,4 +254,10 @@ def pytest_terminal_summary(terminalreporter: Any, exitstatus: int, config: pyte
         exitstatus = exitstatus or _FAILED
     if folder:
         settings = (config.stash[_SEED], config.stash[_ALPHA], int(exitstatus), " ".join(config.invocation_params.args))
-        terminalreporter.write_line(f"report: {written(told, crashed, folder, *settings)}")
+        try:
+            terminalreporter.write_line(f"report: {written(told, crashed, folder, *settings)}")
+        except (FogproofError, OSError) as error:
+            terminalreporter.write_line(f"--fogproof-report: {error}")
+            config.stash[_SESSION].exitstatus = (
+                exitstatus or _USAGE
+            )  # as where it could not have been written from the start

@@ -49,6 +49,18 @@ def test_what_is_read_is_not_written_over(tmp_path, monkeypatch, text, words):
     assert here(Run([*words, "other.npy"])).code == 0
 
 
+@POSIX
+@pytest.mark.parametrize("name", ["-", "/dev/stdin"])
+def test_what_stdin_reads_is_not_written_over(tmp_path, name):
+    (tmp_path / "in.json").write_text(QUESTION)
+    os.link(tmp_path / "in.json", tmp_path / "same.json")
+    for output, code in (("same.json", 2), ("/dev/null", 0), ("other.json", 0)):
+        command = f"{FOGPROOF} golden --requests {name} -o {output} < in.json"
+        done = subprocess.run(["sh", "-c", command], cwd=tmp_path, capture_output=True, text=True)
+        assert (done.returncode, "same.json is the file that is read" in done.stderr) == (code, code == 2), done.stderr
+        assert (tmp_path / "in.json").read_text() == QUESTION
+
+
 @pytest.mark.parametrize(
     "words", [["golden", "phase_pdf"], ["export", "in.toml", "--to", "json"]], ids=lambda words: words[0]
 )

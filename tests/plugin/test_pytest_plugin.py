@@ -357,6 +357,40 @@ def test_a_test_that_ends_its_worker_is_on_the_page(tmp_path):
     assert len(cases) == 2
 
 
+def test_a_rejection_is_not_taken_back_by_the_end_of_the_session(tmp_path):
+    stop = """
+    import pytest
+
+    def test_stop():
+        pytest.exit("done", returncode=0)
+    """
+    out = run(tmp_path, textwrap.dedent(WRONG) + textwrap.dedent(stop), f"--fogproof-report={tmp_path}/page")
+    assert out.returncode == 1, out.stdout + out.stderr
+    assert "verdicts: 1 rejected" in out.stdout
+    assert run(tmp_path, textwrap.dedent(RIGHT) + textwrap.dedent(stop)).returncode == 0
+
+
+@pytest.mark.parametrize(("text", "code"), [(RIGHT, 4), (WRONG, 1)], ids=["right", "wrong"])
+def test_a_report_that_cannot_be_written_at_the_end_is_told(tmp_path, text, code):
+    full = """
+        import os
+        import pytest
+
+        def replace(*_):
+            raise OSError(28, "No space left on device")
+
+        @pytest.hookimpl(tryfirst=True)
+        def pytest_sessionfinish():
+            os.replace = replace
+    """
+    (tmp_path / "conftest.py").write_text(textwrap.dedent(full))
+    out = run(tmp_path, text, f"--fogproof-report={tmp_path}/page")
+    assert (out.returncode, "1 passed" in out.stdout) == (code, code == 4), out.stdout + out.stderr
+    assert "--fogproof-report: cannot write" in out.stdout
+    assert "No space left on device" in out.stdout
+    assert "Traceback" not in out.stdout + out.stderr
+
+
 @pytest.mark.parametrize("workers", [(), ("-n", "1")], ids=["alone", "xdist"])
 def test_a_rejection_is_not_taken_back_by_another_try(tmp_path, workers):
     """A subject that ignores its generator would get as many tries as it likes."""
