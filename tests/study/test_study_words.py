@@ -44,6 +44,15 @@ MINE = """
                 raise ValueError("too many")
             return super().draw(rng, n)
 
+    class Linear(Drawn):
+        title, dimensions, off = "Linear", 1, 0.0
+
+        def draw(self, rng, n):
+            return self.mean * (1 + self.off + np.sqrt(3) * (rng.random((n, 1))[:, 0] - 0.5))
+
+    class LinearOff(Linear):
+        title, off = "Linear and off", 0.003
+
     class Growing(Drawn):
         title = "Growing noise"
 
@@ -193,6 +202,18 @@ def test_where_a_bias_stays_no_more_samples_are_asked_for(tmp_path):
     said = record["scenes"][0]["answer"]["text"]
     assert said.startswith("None comes within 1 %, and none will: the bias of “Level bias” stays.")
     assert "Raise" not in said + record["advice"]
+
+
+def test_what_sobol_points_show_to_be_biased_is_not_unbiased_with_random_ones(tmp_path):
+    """A bias below what random points resolve: scrambled points have the same mean, and a hundredth of the noise."""
+    right, _, random, sobol = run_study(read_study(written(tmp_path, ("Linear", "LinearOff"))), tmp_path / "run")[
+        "scenes"
+    ][0]["estimators"]
+    assert sobol["status"] == "rejected"
+    assert random["status"] == "inconclusive"
+    assert "with Sobol points" in random["findings"][-1]["message"]
+    assert "extrapolated" not in [t["how"] for t in random["speed"]["targets"]]
+    assert right["status"] == "passed"
 
 
 def test_few_realisations_are_no_heavy_tail(tmp_path):

@@ -40,6 +40,7 @@ def error_curve(
         cell.method.axis == "samples"
         and cell.points == "random"
         and judged.outcome != "rejected"
+        and not judged.doubted
         and not cell.method.bias
         and not judged.infinite
     ):

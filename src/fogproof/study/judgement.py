@@ -51,6 +51,11 @@ class Judged:
         return frozenset(f.check for f in self.findings if f.outcome == "rejected")
 
     @property
+    def doubted(self) -> bool:
+        """Whether Sobol points show a bias that random ones do not."""
+        return any(f.check == "Sobol points" for f in self.findings)
+
+    @property
     def infinite(self) -> bool:
         """Whether the variance may be infinite: then no error that was measured says anything of the next."""
         return "infinite" in self.warning
@@ -161,6 +166,16 @@ def inherited(judged: Judged, twin: Judged) -> Judged:
         return judged
     finding = Finding("random points", twin.outcome, f"with random points the estimator is {twin.outcome}")
     return Judged(twin.outcome, (*judged.findings, finding), judged.warning, twin.times_as_many)
+
+
+def doubted(judged: Judged, twin: Judged) -> Judged:
+    """Return the judgement of random points with that of scrambled Sobol points, each of which is uniform: their mean is the same."""
+    if judged.outcome == "rejected" or "mean" not in twin.wrong:
+        return judged
+    finding = Finding(
+        "Sobol points", "inconclusive", "with Sobol points, whose mean is the same, the estimator is rejected"
+    )
+    return replace(judged, outcome="inconclusive", findings=(*judged.findings, finding))
 
 
 def resolution_of(value: float, error: float, terms: int = 1) -> float:

@@ -16,7 +16,7 @@ from fogproof.study.cells import Cell
 from fogproof.study.convergence import Estimate, Floor, Order, Z, floor_of, order_of, rmse
 from fogproof.study.error_curve import error_curve, reaches_of, stays_for_good
 from fogproof.study.fixed_work import summed_up
-from fogproof.study.judgement import BY_BIAS, Judged, inherited, judge, out_of_range, resolution_of
+from fogproof.study.judgement import BY_BIAS, Judged, doubted, inherited, judge, out_of_range, resolution_of
 from fogproof.study.methods.table import kind_of, options_of
 from fogproof.study.reaching import Reach
 from fogproof.study.scatter import degrees_of_freedom, kurtosis, spread
@@ -62,11 +62,12 @@ class Measured:
 def measure(
     cell: Cell, levels: Sequence[Level], alpha: float, twin: Measured | None = None, failed: int = 0
 ) -> Measured:
-    """Measure a cell; every test has the false-alarm probability alpha. The twin of Sobol points are random ones."""
+    """Measure a cell; every test has the false-alarm probability alpha. The twin has the other points."""
     levels = [level for level in levels if len(level.rows)]
     variance = cell.method.variance(cell.scene)
     judged = judge(cell, levels, variance, alpha)
-    judged = judged if twin is None else inherited(judged, twin.judged)
+    if twin is not None:
+        judged = (inherited if cell.points == "sobol" else doubted)(judged, twin.judged)
     levels = [] if out_of_range(cell, levels) else levels  # what cannot be summed cannot be measured
     value, error = float(cell.reference.value), float(cell.reference.error)
     data = pooled(np.concatenate([level.rows for level in levels])) if levels else Moments()

@@ -61,7 +61,10 @@ def make_record(
     measured: list[Measured] = []
     for cell in cells:  # random points stand right before their Sobol twin
         twin = measured[-1] if cell.points == "sobol" else None
-        measured.append(measure(cell, levels[cell.index], alpha, twin, failed.get(cell.index, 0)))
+        own = measure(cell, levels[cell.index], alpha, twin, failed.get(cell.index, 0))
+        if twin is not None and own.status == "rejected" and not twin.judged.wrong:
+            measured[-1] = measure(twin.cell, levels[twin.cell.index], alpha, own, twin.failed)
+        measured.append(own)
     scenes = [_scene(number, study, measured) for number in range(len(study.scenes))]
     failures = [_failure(row, cells, batches) for row in store.failures()]
     done = len(store.done())
