@@ -16,7 +16,9 @@ from fogproof.reports.pages.templates import fill
 from fogproof.reports.records.runs import Case, RunRecord
 from fogproof.reports.records.study_record import History
 
-CHANGES = ("worse", "changed", "gone", "mended", "new", "same")
+BECAME = ("biased", "noisier", "slower", "different", "less noisy", "faster")
+"""What may have become of an estimator of a study that is judged as before."""
+CHANGES = ("worse", *BECAME[:4], "changed", "gone", "mended", *BECAME[4:], "new", "same")
 """What may have become of a case, from what needs attention to what does not."""
 
 _WRONG = {"rejected", "surprise", "error"}
@@ -24,11 +26,12 @@ _WRONG = {"rejected", "surprise", "error"}
 
 @dataclass(frozen=True)
 class Pair:
-    """One case in two runs; None in the run that lacks it."""
+    """One case in two runs; None in the run that lacks it. `became` holds those of `BECAME` that were found of it."""
 
     name: str
     before: Case | None
     after: Case | None
+    became: tuple[str, ...] = ()
 
     @property
     def change(self) -> str:
@@ -39,7 +42,9 @@ class Pair:
             return "gone"
         if self.wrong != (self.before.status in _WRONG):
             return "worse" if self.wrong else "mended"
-        return "same" if self.before.status == self.after.status else "changed"
+        if self.before.status != self.after.status:
+            return "changed"
+        return self.became[0] if self.became else "same"
 
     @property
     def wrong(self) -> bool:
@@ -47,10 +52,14 @@ class Pair:
         return self.after is not None and self.after.status in _WRONG
 
 
-def pair_cases(before: RunRecord, after: RunRecord) -> list[Pair]:
+def pair_cases(before: RunRecord, after: RunRecord, history: History | None = None) -> list[Pair]:
     """Return the cases of both runs, matched by name, what needs attention first."""
     old, new = ({case.name: case for case in run.cases} for run in (before, after))
-    pairs = [Pair(name, old.get(name), new.get(name)) for name in old | new]
+    became = {
+        f"{change.scene} / {change.estimator}": tuple(word for word in BECAME if word in change.became)
+        for change in (history.changes if history else ())
+    }
+    pairs = [Pair(name, old.get(name), new.get(name), became.get(name, ())) for name in old | new]
     return sorted(pairs, key=lambda pair: (CHANGES.index(pair.change), not pair.wrong))
 
 
@@ -65,7 +74,7 @@ def exit_code(before: RunRecord, after: RunRecord, history: History | None = Non
 
 def write_comparison_page(before: RunRecord, after: RunRecord, folder: Path, history: History | None = None) -> Path:
     """Write `folder/comparison.html` and its figures; return the page's path."""
-    pairs = pair_cases(before, after)
+    pairs = pair_cases(before, after, history)
     figures = _figures(pairs, history)
     for picture in figures:
         picture.save(folder / "figures")
@@ -85,7 +94,7 @@ def write_comparison_page(before: RunRecord, after: RunRecord, folder: Path, his
         tone="bad"
         if counts["worse"] or still or (history and history.worse)
         else "care"
-        if counts["changed"] or counts["gone"]
+        if counts["changed"] or counts["different"] or counts["gone"]
         else "good",
     )
     return write_file(folder / "comparison.html", page)

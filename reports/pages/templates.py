@@ -24,8 +24,9 @@ if TYPE_CHECKING:
 
 _STATUSES = {"surprise": "!", "rejected": "✗", "error": "⚠", "inconclusive": "?", "known": "⚑", "skipped": "–"}
 _CHANGES = {"worse": "✗", "mended": "✓", "changed": "≠", "new": "+", "gone": "–", "same": "="}
+_BECAME = {"biased": "✗", "noisier": "↑", "slower": "↑", "different": "≠", "less noisy": "↓", "faster": "↓"}
 _TRUST = {"kept": "✓", "broken": "✗", "caught": "✓", "blind": "✗"}
-_MARKS = _STATUSES | {"passed": "✓"} | _CHANGES | _TRUST
+_MARKS = _STATUSES | {"passed": "✓"} | _CHANGES | _BECAME | _TRUST
 
 
 def fill(template: str, **values: Any) -> str:

@@ -5,7 +5,7 @@ import pytest
 from laws_by_hand import TURN, about, hold
 
 from fogproof import UnitHemisphere, UnitSphere, check_sampler
-from fogproof.checks.diagnosis import lobes
+from fogproof.checks.diagnosis import directions, lobes
 from fogproof.checks.diagnosis.explaining import setting_of
 from fogproof.checks.subject import Subject
 from fogproof.zoo.laws import hg_cosine
@@ -145,3 +145,12 @@ def test_a_cone_hardly_too_wide_has_no_parameter_that_is_not_pinned():
     words, fitted, _ = verdict.diagnosis.partition(" +-")
     told = [float(words.split()[-1])] if fitted else []
     assert all(1 < value < 1.06 for value in told), verdict.diagnosis
+
+
+def test_a_square_root_too_many_is_no_missing_one():
+    """Beside a uniform pdf it makes cosine-weighted samples, beside another one it does not."""
+    for pdf, weighted in ((lambda x: np.full(len(x), 1 / TURN), True), (COSINE[1], False)):
+        setting = setting_of(Subject(COSINE[0], pdf, UnitHemisphere(), 2), 1 << 12, 1)
+        root = next(each for each in directions.hypotheses(setting) if "cosine raised to the power" in each.words)
+        assert (root.caused(0.5, 1e-3), root.caused(2.0, 1e-3)) == ("wrong power", "missing square root")
+        assert ("cosine-weighted where the pdf is uniform" in root.said(0.5, 1e-3)) == weighted

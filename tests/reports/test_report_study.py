@@ -181,6 +181,23 @@ def test_two_studies_are_compared(tmp_path):
     assert compare_exit_code(after, after) == 0
 
 
+@pytest.mark.parametrize(
+    ("became", "first"), [(["slower"], "slower"), (["faster", "noisier"], "noisier"), (["less noisy"], "less noisy")]
+)
+def test_what_became_of_an_estimator_stands_in_counts_rows_and_a_table(became, first, tmp_path):
+    after = study()
+    after["history"]["changes"][0]["became"] = became
+    page = Page(write_comparison(study(started="2026-01-30"), after, tmp_path))
+    assert re.search(rf"1 {first}, \d as before", page.words)
+    (row,) = re.findall(r'<tr data-status="([^"]+)">\s*<th scope="row"><bdi>haze / delta</bdi>', page.html)
+    assert row == first
+    assert all(f'<span class="badge {word.replace(" ", "-")}">' in page.html for word in became)
+    assert '<a href="#history">table</a>' in page.html
+    table = page.html.split('<h2 id="history">')[1].split("</section>")[0]
+    assert "haze / delta" in table
+    assert ", ".join(became) in table
+
+
 def test_a_study_and_a_verification_can_be_told_apart(tmp_path):
     words = Page(write_comparison(record([case("a", figures=False)]), study(), tmp_path)).words
     assert "1 gone" in words

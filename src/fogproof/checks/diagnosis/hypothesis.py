@@ -97,6 +97,7 @@ class Hypothesis:
     fitted   how many parameters were taken from the samples beforehand
     named    parameter -> what it is better known as, "" if it is nothing special
     null     the parameter with which it is the claim itself, None if there is none
+    below    the class of error where the parameter is less than that, `cause` unless given
     prior    logarithm of how much likelier it is than others before any sample is seen
     otherwise  the class of error where the parameter is no whole or half number, `cause` unless given
     """
@@ -110,9 +111,12 @@ class Hypothesis:
     prior: float = 0.0
     otherwise: str = ""
     null: float | None = None
+    below: str = ""
 
     def caused(self, value: float, error: float) -> str:
         """Return the class of error, given the fitted parameter and its standard error."""
+        if self.below and self.null is not None and value < self.null:
+            return self.below
         pinned = 3 * error < _SIMPLE_ERROR
         simple = pinned and abs(2 * value - round(2 * value)) < 2 * (3 * error + _SIMPLE) and round(2 * value) != 0
         return self.otherwise if self.otherwise and not simple else self.cause
