@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import itertools
+import json
+import os
+import tempfile
 from collections import deque
 from collections.abc import Callable
-from typing import Any
+from typing import IO, Any
 
 import fogproof
 from fogproof.checks import InconclusiveError, RejectedError, Verdict
@@ -29,10 +33,16 @@ class Checks:
         self._calls, self._passes, self._news = calls, passes, news
         self._count, self._number, self._running = itertools.count(1), itertools.count(), list[str]()
         self._ended = False
+        self._process, self._forks = os.getpid(), _shared()
 
     def _end(self) -> str:
         """Take no more checks: the test has ended. Return what still runs, "" if nothing does."""
         self._ended = True
+        if self._forks is not None and self._process == os.getpid():
+            with self._forks as forks:
+                forks.seek(0)
+                for line in forks:
+                    self._put(*json.loads(line))
         return ", ".join(self._running)
 
     def __getattr__(self, name: str) -> Any:
@@ -48,7 +58,7 @@ class Checks:
             __tracebackhide__ = True
             if self._ended:
                 why = f"{name} was called by the fixture of {self._test}, which had ended: it was not judged"
-                self._news.append((self._test, next(self._number), None, why))
+                self._put(None, why)
                 raise InvalidValueError("fogproof", why, name, "ask for the fixture in the test that uses it")
             self._running.append(name)
             try:
@@ -87,7 +97,14 @@ class Checks:
     def _tell(self, name: str, verdict: Verdict) -> None:
         fails = verdict.outcome == "rejected" or (verdict.outcome == "inconclusive" and not self._passes)
         told = {"check": name, **verdict.to_dict()}
-        self._news.append((self._test, next(self._number), told, f"{name}: {verdict.outcome}" if fails else ""))
+        self._put(told, f"{name}: {verdict.outcome}" if fails else "")
+
+    def _put(self, told: dict[str, Any] | None, why: str) -> None:
+        """Tell of a verdict; a process that the test has forked leaves it in a file that both have open."""
+        if self._forks is None or self._process == os.getpid():
+            self._news.append((self._test, next(self._number), told, why))
+        else:
+            os.write(self._forks.fileno(), json.dumps([told, why]).encode() + b"\n")
 
     def _raise(self, verdict: Verdict, about: str = "") -> None:
         """Raise for a verdict that fails the test; `about` says first what it is about."""
@@ -111,3 +128,11 @@ class Checks:
         """Return a seed that depends on the test's name: another run of it with the session's seed says the same."""
         words = f"{self._seed}/{self._test}/{number}".encode()
         return int.from_bytes(hashlib.blake2b(words, digest_size=8).digest()) >> 2
+
+
+def _shared() -> IO[bytes] | None:
+    """Return a file for what forked processes find, None where nothing forks or there is no place for one."""
+    if hasattr(os, "fork"):
+        with contextlib.suppress(OSError):
+            return tempfile.TemporaryFile()
+    return None

@@ -302,6 +302,38 @@ def test_a_rejection_fails_its_test_whoever_catches_it(tmp_path):
     assert [case["status"] for case in cases if "running" not in case["name"]] == ["rejected"] * 4
 
 
+FORKS = """
+    import multiprocessing, os
+
+    def test_wrong(fogproof):
+        fogproof.check_estimator(lambda rng, n: rng.random(n), 0.5, samples=2000)
+        child = os.fork()
+        if child == 0:
+            try:
+                fogproof.check_estimator(lambda rng, n: rng.random(n), 0.9, samples=2000)
+            finally:
+                os._exit(0)
+        os.waitpid(child, 0)
+
+    def test_right(fogproof):
+        check = lambda: fogproof.check_estimator(lambda rng, n: rng.random(n), 0.5, samples=2000)
+        child = multiprocessing.get_context("fork").Process(target=check)
+        child.start()
+        child.join()
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs a system that can fork")
+@pytest.mark.parametrize("workers", [(), ("-n", "1")], ids=["alone", "xdist"])
+def test_a_rejection_in_a_forked_process_is_not_lost(tmp_path, workers):
+    out = run(tmp_path, FORKS, *workers, f"--fogproof-report={tmp_path}/page")
+    assert (out.returncode, "1 error" in out.stdout) == (1, True), out.stdout + out.stderr
+    assert re.search("check_estimator: rejected, though the exception has not ended the test", out.stdout)
+    cases = json.loads((tmp_path / "page" / "results.json").read_text())["cases"]
+    told = sorted((case["name"].removeprefix("test_mine.py::"), case["status"]) for case in cases)
+    assert told == [("test_right", "passed"), ("test_wrong #1", "passed"), ("test_wrong #2", "rejected")]
+
+
 AFTER = """
     import pytest
 
