@@ -169,7 +169,7 @@ def inherited(judged: Judged, twin: Judged) -> Judged:
 
 
 def doubted(judged: Judged, twin: Judged) -> Judged:
-    """Return the judgement of random points with that of scrambled Sobol points, each of which is uniform: their mean is the same."""
+    """Return the judgement of random points with that of Sobol points: each scrambled one is uniform, and their mean the same."""
     if judged.outcome == "rejected" or "mean" not in twin.wrong:
         return judged
     finding = Finding(
