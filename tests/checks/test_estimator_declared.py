@@ -336,3 +336,14 @@ def test_an_estimator_that_ends_the_program_is_a_subject_that_fails():
 def test_a_reference_is_no_image():
     with pytest.raises(InvalidValueError, match="reshape"):
         check_estimator(lambda r, n: r.random(n), [[0.5]])
+
+
+@pytest.mark.parametrize("outside", [-1e-3, -50.0, -1e300])
+def test_what_lies_outside_one_declared_bound_is_rejected_for_that_alone(outside):
+    x = np.random.default_rng(1).random(100)
+    x[3] = outside
+    for sign, options in ((1, {"nonnegative": True}), (-1, {"bounds": (-np.inf, 0.0)})):
+        verdict = check_estimator(sign * x, sign * 0.5, **options)
+        found = [f.check for f in verdict.findings if f.outcome == "rejected"]
+        assert "bounds" in found, str(verdict)
+        assert all(f.p_value is None or 0 <= f.p_value <= 1 for f in verdict.findings)
