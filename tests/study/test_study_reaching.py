@@ -71,6 +71,18 @@ def test_how_many_samples_are_needed_bounds_the_time_that_is_not_told():
     assert 0.1 * 1e10 * 1e-8 < found.at_least < 1e10 * 1e-8
 
 
+def test_no_interval_goes_below_the_time_of_a_call_that_is_not_enough():
+    """Four replicates tell an error hardly, and the time to it by decades: but the smallest call was timed."""
+    sizes = (0.03, 0.02, 0.008)
+    wide = [Estimate(e, e / 5, 5 * e) for e in sizes]
+    unsure = reaches_of(ErrorOverTime(COUNTS, wide, flat(1e-6)), 1.0, 0.0)[0]
+    sure = Reach(0.01, "measured", "", 10.0, Times(5e-5 * np.exp(0.02 * np.array([2, -1, 1, -2] * 2))))
+    assert unsure.how == "measured"
+    assert 0.9e-4 < unsure.seconds.low <= unsure.seconds.value
+    assert 0.45 < sure.relative_to(unsure).high < 0.6
+    assert 1.7 < unsure.relative_to(sure).low < 2.2
+
+
 def test_a_smaller_error_that_noise_makes_sooner_takes_as_long_as_the_larger():
     late, soon = (Reach(0.01, "measured", "", 10.0, Times(time * np.array([1, 1.1] * 4))) for time in (1.0, 0.9))
     assert soon.after(late).seconds == late.seconds

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -100,5 +101,7 @@ def reaches_of(curve: ErrorOverTime, value: float, hidden: float) -> tuple[Reach
     reaches: list[Reach] = []
     for error in TARGETS:
         reach = reach_of(curve, error * value, error, hidden)
+        if reach.reached and reach.how != "less-than" and reach.samples != curve.counts[0]:
+            reach = replace(reach, call=curve.times[0])
         reaches.append(reach.after(reaches[-1]) if reaches else reach)
     return tuple(reaches)

@@ -66,6 +66,7 @@ class Reach:
     untimed  whether so many samples are known to do, and their time alone is not known
     noise    how far the logarithm of the time reaches below and above because of the error's own interval
     least    what is known to be needed in any case: the time of a larger error, or of so many samples
+    call     the time of the first count where that is not enough, None elsewhere: no estimate that is takes less
     """
 
     error: float
@@ -76,6 +77,7 @@ class Reach:
     noise: tuple[float, float] = (0.0, 0.0)
     untimed: bool = False
     least: float = 0.0
+    call: Times | None = None
 
     @property
     def reached(self) -> bool:
@@ -87,7 +89,8 @@ class Reach:
         """The time with its interval, which begins at 0 where the first count is better already."""
         own = self.times.estimate
         time = scaled(own.value, *_wider(own, self.noise))
-        low = 0.0 if self.how == "less-than" else max(time.low, min(self.least, own.value))
+        least = max(self.least, self.call.estimate.low) if self.call else self.least
+        low = 0.0 if self.how == "less-than" else max(time.low, min(least, own.value))
         return Estimate(own.value, low, time.high)
 
     @property
@@ -109,7 +112,16 @@ class Reach:
         below, above = _wider(ratio, (more * noise[0], more * noise[1]))
         below = math.inf if self.how == "less-than" else below
         above = math.inf if other.how == "less-than" else above
-        return scaled(ratio.value, below, above)
+        found = scaled(ratio.value, below, above)
+        most = found.high if other.call is None else min(found.high, self._most(other.call, confidence))
+        least = found.low if self.call is None else max(found.low, 1 / other._most(self.call, confidence))
+        return Estimate(found.value, min(least, found.value), max(most, found.value))
+
+    def _most(self, call: Times, confidence: float) -> float:
+        """Return how many times as long as a call it takes at most."""
+        ratio = self.times.relative_to(call, confidence)
+        _, above = _wider(ratio, (0.0, deviations(confidence) / Z * self.noise[1]))
+        return scaled(ratio.value, 0.0, above).high
 
 
 def _wider(time: Estimate, noise: tuple[float, float]) -> tuple[float, float]:
