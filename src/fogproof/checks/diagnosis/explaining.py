@@ -34,6 +34,7 @@ _SMALL = 1 << 20  # samples that tell a misfit which does not show in so many
 _MISFIT = 4.0  # standard deviations of a chi-square that is no chance
 _STANDS_OUT = 12.0  # of log-likelihood that a hypothesis gains over the claim
 _CLEARLY = 3.0  # of log-likelihood that tells two hypotheses apart, and one from a law that is a little off anywhere
+_ALL_BUT = 0.9995  # of the misfit: the rest is what the numbers in a hypothesis, estimated from samples, are off
 _SAME = 1e-3  # of log-likelihood: two hypotheses that are one density
 _CLOSE = 12.0  # of log-likelihood that more samples may make up
 _FITS = 0.98  # the same of a law that has nothing to do with the claim
@@ -60,7 +61,7 @@ def explanation(subject: Subject, setting: Setting, base: Fit, samples: int, see
     if gain < _STANDS_OUT or share < needed or gain < unexplained(many.contrast, many.values) + _CLEARLY:
         return None
     near = [each for each in found[1:] if each.cause != best.cause and each.score > best.score - _CLEARLY]
-    if refused(many, best):
+    if share < _ALL_BUT and refused(many, best):
         most = math.floor(1000 * share) / 10
         told = (
             f"near to, but not: {best.words} (this explains {most:.1f}% of the misfit, and what is left is no chance)"
