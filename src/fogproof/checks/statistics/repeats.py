@@ -24,11 +24,9 @@ KEPT = 1 << 18
 _WINDOW = 32  # neighbours on either side that tell how far apart values are
 _EQUAL = 1e-6  # of that distance
 _SAME = 1e-13  # of the span of all values
-_OFTEN, _SEVERAL, _NEARLY_ALL = (
-    8,
-    8,
-    0.9,
-)  # samples of a number, such numbers, and the share of all samples that they have
+_OFTEN = 8  # samples of a single number
+_SEVERAL = 8  # such numbers
+_NEARLY_ALL = 0.9  # of all samples have one of them
 _APART = 1e3  # times what rounding does: single numbers, and none of its own steps
 _CERTAIN = 0.999
 
