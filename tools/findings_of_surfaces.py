@@ -121,7 +121,21 @@ def underground() -> str:
             f"{distribution}: {weight @ bsdf.pdf(x):.4f} above and {weight @ bsdf.pdf(below):.4f} below the surface,"
             f" where {wrong} of 10^6 samples fall and eval is {np.max(bsdf.eval(below)):g}"
         )
-    return f"Integral of pdf() by a product rule, at 50 degrees: {'; '.join(rows)}."
+    told = f"Integral of pdf() by a product rule, at 50 degrees: {'; '.join(rows)}."
+    return f"{told} The largest pdf() of the variant scalar_rgb at these directions is {scalar_pdf(below[::97]):g}."
+
+
+def scalar_pdf(x: np.ndarray) -> float:
+    """Return the largest density of roughplastic at directions (n, 3), one by one in a scalar variant."""
+    mi = load()
+    mi.set_variant("scalar_rgb")
+    try:
+        bsdf = mi.load_dict({"type": "roughplastic", "distribution": "ggx", "alpha": 0.4})
+        surface, context = mi.SurfaceInteraction3f(), mi.BSDFContext()
+        surface.wi = list(direction(50.0, 25.0))
+        return max(float(bsdf.pdf(context, surface, list(wo))) for wo in x)
+    finally:
+        load()
 
 
 def rim_of_visible_normals() -> str:

@@ -13,6 +13,7 @@ from report_records import typical
 from fogproof.bench.record import page as bench_page
 from fogproof.bench.record import run_record
 from fogproof.checks.json_values import jsonable
+from fogproof.checks.statistics.known import Known
 from fogproof.cli import main
 from fogproof.contracts import Reference
 from fogproof.reports.gallery import pictures
@@ -88,7 +89,7 @@ def test_a_study_stopped_after_few_replicates_is_judged(replicates):
     level = Level(
         100, rows, 48, rows[0], np.zeros(0), float("nan"), np.zeros(0), float("nan"), replicates, 0.0, np.empty((0, 4))
     )
-    checks = [finding.check for finding in _against_theory([level], exact, 1e-6)]
+    checks = [finding.check for finding in _against_theory([level], exact, 1e-6, Known(), 0.0)]
     assert checks == ["variance", "scatter of replicates"][:replicates]
 
 

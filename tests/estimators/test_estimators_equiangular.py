@@ -52,16 +52,20 @@ def test_edges_stay_on_the_segment(h, a, length, kind):
     assert np.all(draw.pdf > 0)
 
 
-def test_rounding_past_infinity_does_not_come_back_from_behind():
-    """In single precision the last uniform may reach an angle beyond that of infinity: the tangent has changed its sign."""
-    a = np.random.default_rng().uniform(0.1, 10, 200_000)
+def test_rounding_past_infinity_does_not_come_back_from_behind(monkeypatch):
+    """In single precision the last uniform may reach an angle beyond that of infinity, where the tangent has changed its sign.
+
+    Whether it does depends on the processor's tangent: one that is four units off, as fast ones are, stands for all.
+    """
+    exact = np.tan
+
+    def fast(t, out):
+        out[...] = exact(t) * np.float32(1 + 4 * 2.0**-23)
+
+    monkeypatch.setattr(np, "tan", fast)
     u = np.array([[1 - 2.0**-24]], np.float32)
-    with np.errstate(all="ignore"):
-        t = u[0, 0] * np.arctan2(1, a).astype(np.float32)
-        passed = a[np.tan(t) * -a.astype(np.float32) + np.float32(1) < 0]
-    assert len(passed)
-    for one in passed:
-        assert Equiangular(1.0, float(one), np.inf).sample(u).x[0] > 1e3
+    for a in np.random.default_rng().uniform(0.1, 10, 200):
+        assert Equiangular(1.0, a, np.inf).sample(u).x[0] > 1e3
 
 
 @pytest.mark.parametrize(

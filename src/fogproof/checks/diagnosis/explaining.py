@@ -48,9 +48,9 @@ _NUMBER = re.compile(r"[-+]?[0-9][-+0-9.e]*")
 def explanation(subject: Subject, setting: Setting, base: Fit, samples: int, seed: int) -> tuple[str, str] | None:
     """Return the class of error and the words of the one hypothesis that explains a misfit, None if none does.
 
-    It must gain more than any general correction of the claim would, and leave little to such. Where another gains as much the
-    class is "shape", and the words name both. What the samples refuse in its turn is said to be near, and its class is "shape" too,
-    except that a place without samples is one whatever the others are.
+    It must gain more than any general correction of the claim would, and leave little to such. Where another gains as much, and
+    takes no more numbers from the samples, the class is "shape"; the words name both. What the samples refuse in its turn is said
+    to be near, and its class is "shape" too, except that a place without samples is one whatever the others are.
     """
     many, found = _candidates(subject, setting, base, samples, seed)
     if not found:
@@ -73,6 +73,9 @@ def explanation(subject: Subject, setting: Setting, base: Fit, samples: int, see
     if all(abs(each.fit.likelihood - best.fit.likelihood) < _SAME for each in near):
         others = dict.fromkeys(each.words for each in near)
         return best.cause, f"{told}; that is the same as: {'; '.join(others)}"
+    if best.numbers < min(each.numbers for each in near):  # of laws that fit alike, the one that needed no fitting
+        others = dict.fromkeys(each.words for each in near)
+        return best.cause, f"{told}; more samples would tell it from: {'; or '.join(others)}"
     alike = dict.fromkeys(each.words for each in (best, *near))
     return "shape", f"several hypotheses explain it alike: {'; or '.join(alike)}"
 

@@ -47,6 +47,12 @@ class Explained:
         """The class of error."""
         return self.hypothesis.caused(self.value, self.error)
 
+    @property
+    def numbers(self) -> int:
+        """How many numbers were taken from the samples; what is better known by a name is none."""
+        free = self.hypothesis.trials and not self.hypothesis.named(self.value, self.error)
+        return self.hypothesis.fitted + bool(free)
+
     def density(self, setting: Setting) -> np.ndarray:
         """Return the density that the samples would have, at all points."""
         return self.hypothesis.density(setting, self.value)(setting.contrast.points)
