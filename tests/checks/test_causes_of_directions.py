@@ -161,7 +161,7 @@ CASES = {  # sampler, pdf, domain, dimensions; the cause and words of what expla
     "a turned flat lobe": (
         (ggx(FLAT, frame=turned(0.1) @ OBLIQUE)[0], ggx(FLAT, frame=OBLIQUE)[1], *SPHERE),
         "rotated frame",
-        "turned by 0.1",
+        "of a turn, about (0.480, 0.640, 0.600)",
     ),
     "all signs": ((*signless(hg(0.6, OBLIQUE), [0, 1, 2]), *SPHERE), "lost sign", "the signs of x, y and z are lost"),
     "all signs of an even law": (
