@@ -33,7 +33,7 @@ def hypotheses(setting: Setting, names: Sequence[str], azimuth: tuple[int, ...] 
         return
     signs = np.ones((2 ** len(lost), x.shape[1]))
     signs[:, lost] = list(product((1.0, -1.0), repeat=len(lost)))
-    *first, last = (names[axis] for axis in lost)
+    *first, last = (names[axis] for axis in lost.tolist())
     told = f"signs of {', '.join(first)} and {last} are" if first else f"sign of {last} is"
     words = f"these samples fit the pdf folded: the {told} lost"
     points = setting.contrast.points
