@@ -76,8 +76,8 @@ def _machines(record: dict[str, Any]) -> set[str]:
 
 
 def _one_run(before: dict[str, Any], after: dict[str, Any]) -> bool:
-    keys = ("started", "seconds", "digest", "fingerprint")
-    return all(before[key] == after[key] for key in keys)
+    one, other = ({key: told for key, told in record.items() if key != "history"} for record in (before, after))
+    return one == other
 
 
 def _perhaps(changes: Sequence[dict[str, Any]]) -> str:
