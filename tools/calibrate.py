@@ -2,7 +2,8 @@
 
     python tools/calibrate.py [--verdicts 100000] [--seeds 330 33 1] [--workers 2] [--page docs/calibration.md]
 
-Of each kind of check, at least `--verdicts` p-values of right subjects are counted at or below 1e-3. No kind may exceed the upper
+Of each kind of check, at least `--verdicts` p-values of right subjects are counted at or below 1e-3: every subject is judged a few
+thousand times, and those of the rarest kind go on. No kind may exceed the upper
 end of its 99.9 % band, taken over all kinds together; exact kinds may not fall below the lower end either. Then right samplers are
 checked whole at alpha = 1e-6, with `--seeds` seeds at 10^5, 10^6 and 10^8 samples: none may be rejected, and none inconclusive that
 `calibrate_subjects.OPEN` does not name. What is done is written down as it ends: who starts again goes on.
@@ -11,19 +12,21 @@ checked whole at alpha = 1e-6, with `--seeds` seeds at 10^5, 10^6 and 10^8 sampl
 from __future__ import annotations
 
 import argparse
+import itertools
 import json
 import platform
 import sys
-from collections import Counter
+import time
+from collections import Counter, defaultdict
 from collections.abc import Iterable
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from dataclasses import fields, replace
 from pathlib import Path
 
 import calibrate_estimators
 import numpy as np
 import planted
-from calibrate_subjects import OPEN, RIGHT, SHARES, SUBJECTS, estimator_findings
+from calibrate_subjects import OPEN, RIGHT, SUBJECTS, estimator_findings
 from calibrate_tally import LEVEL, Tally, outside, page
 
 from fogproof.checks import SamplerCheck, check_sampler, fresh_seed
@@ -75,47 +78,90 @@ def allowed(name: str) -> set[str]:
 
 
 _PART = 1000  # verdicts of one task
+_LEAST = 3  # tasks of each subject
 _ESTIMATORS = "estimators"
 Job = tuple[
     str, str, int, int, int
 ]  # p-values or whole verdicts, of what, at how many samples, how many, number of the part
 
 
-def jobs(verdicts: int, samples: int, seeds: Iterable[int]) -> list[Job]:
-    """Return what there is to do: p-values in parts, then whole verdicts."""
-    shares = {_ESTIMATORS: 1.0, **{name: SHARES.get(name, 0.34) for name in SUBJECTS}}
-    wanted = [("p", name, samples, int(np.ceil(share * verdicts))) for name, share in shares.items()]
-    wanted += [
-        ("whole", name, n, count) for n, count in zip((10**5, 10**6, 10**8), seeds, strict=True) for name in RIGHT
-    ]
+def whole_jobs(seeds: Iterable[int]) -> list[Job]:
+    """Return the whole verdicts there are to make, in parts."""
+    wanted = [(name, n, count) for n, count in zip((10**5, 10**6, 10**8), seeds, strict=True) for name in RIGHT]
     return [
-        (kind, name, n, size, part)
-        for kind, name, n, count in wanted
+        ("whole", name, n, size, part)
+        for name, n, count in wanted
         for part, size in enumerate([_PART] * (count // _PART) + [count % _PART] * (count % _PART > 0))
     ]
+
+
+def scarcest(rows: Iterable[dict], started: Counter[str], verdicts: int) -> str | None:
+    """Return of which subject to make p-values next: of the kind there are fewest of, where that takes least time.
+
+    started  parts of each subject that are done or being done; None is returned once there are `verdicts` p-values of every kind
+    """
+    few = [name for name in (_ESTIMATORS, *SUBJECTS) if started[name] < _LEAST]
+    if few:
+        return min(few, key=lambda name: started[name])
+    done: Counter[str] = Counter()
+    seconds: Counter[str] = Counter()
+    counted: dict[str, Counter[str]] = defaultdict(Counter)
+    for row in rows:
+        name = row["job"][1]
+        done[name] += 1
+        seconds[name] += row["seconds"]
+        counted[name].update(row["counted"])
+    total: Counter[str] = Counter()
+    for name, kinds in counted.items():
+        for kind, count in kinds.items():
+            total[kind] += count * started[name] / done[name]
+    if not total or min(total.values()) >= verdicts:
+        return None
+    kind = min(total, key=lambda kind: total[kind])
+    return max(counted, key=lambda name: counted[name][kind] / seconds[name])
 
 
 def done(job: Job, seed: int) -> dict:
     """Do one part; return its row of the log."""
     kind, name, samples, size, _ = job
+    began = time.process_time()
     if kind == "whole":
         return {"job": job, "outcomes": whole_verdicts(name, size, samples, seed)}
     tally = estimator_tally(size, samples, seed) if name == _ESTIMATORS else sampler_tally(name, size, samples, seed)
-    return {"job": job, **vars(tally)}
+    return {"job": job, "seconds": time.process_time() - began, **vars(tally)}
 
 
-def rows_of(asked: list[Job], log: Path, workers: int) -> list[dict]:
+def rows_of(verdicts: int, samples: int, seeds: Iterable[int], log: Path, workers: int) -> list[dict]:
     """Do what the log has not got yet, each part with a fresh seed; return the rows of what was asked."""
     log.parent.mkdir(parents=True, exist_ok=True)
     rows = {tuple(row["job"]): row for row in map(json.loads, log.read_text().splitlines())} if log.exists() else {}
-    left = [job for job in asked if job not in rows]
+    mine = {job: row for job, row in rows.items() if job[0] == "p" and job[2:4] == (samples, _PART)}
+    started = Counter(job[1] for job in mine)
+    wholes = whole_jobs(seeds)
+    waiting = iter([job for job in wholes if job not in rows])
+
+    def following() -> Job | None:
+        name = scarcest(mine.values(), started, verdicts)
+        if name is None:
+            return next(waiting, None)
+        part = next(part for part in itertools.count() if ("p", name, samples, _PART, part) not in taken)
+        started[name] += 1
+        return "p", name, samples, _PART, part
+
+    taken, running = set(mine), {}
     with ProcessPoolExecutor(workers) as pool, log.open("a") as file:
-        for count, future in enumerate(as_completed([pool.submit(done, job, fresh_seed() >> 2) for job in left])):
-            row = future.result()
-            rows[tuple(row["job"])] = row
-            print(json.dumps(row), file=file, flush=True)
-            print(f"\r{count + 1}/{len(left)}", end="", file=sys.stderr, flush=True)
-    return [rows[job] for job in asked]
+        while True:
+            while len(running) < workers and (job := following()):
+                taken.add(job)
+                running[pool.submit(done, job, fresh_seed() >> 2)] = job
+            if not running:
+                break
+            for future in wait(running, return_when=FIRST_COMPLETED).done:
+                job, row = running.pop(future), future.result()
+                (mine if job[0] == "p" else rows)[job] = row
+                print(json.dumps(row), file=file, flush=True)
+                print(f"\r{sum(started.values())} parts of p-values; now {job[1]}", end="", file=sys.stderr, flush=True)
+    return [*mine.values(), *(rows[job] for job in wholes)]
 
 
 def gathered(rows: Iterable[dict]) -> tuple[Tally, dict[tuple[str, int], Counter[str]]]:
@@ -144,7 +190,7 @@ def main() -> None:
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--page", type=Path, default=Path("docs/calibration.md"))
     arguments = parser.parse_args()
-    rows = rows_of(jobs(arguments.verdicts, arguments.samples, arguments.seeds), arguments.log, arguments.workers)
+    rows = rows_of(arguments.verdicts, arguments.samples, arguments.seeds, arguments.log, arguments.workers)
     tally, wholes = gathered(rows)
     settings = (
         f"{sum(tally.counted.values())} p-values, of verdicts of {arguments.samples} samples on {len(SUBJECTS)} samplers and"

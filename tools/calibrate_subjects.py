@@ -116,15 +116,6 @@ SUBJECTS: dict[str, Callable[[], Subject]] = {
     ),
 }
 
-SHARES = {
-    "free path with a surface": 1.0,
-    "weights": 1.0,
-    "Rayleigh, tilted axis": 0.1,
-    "exponential": 0.1,
-    "normal": 0.1,
-}
-"""Of the wanted number of verdicts, a subject gets this share, or a third: the kinds of check that few subjects need get enough."""
-
 RIGHT = {
     **{
         f"Henyey-Greenstein, g = {g:g}": (lambda g=g: _directions(HenyeyGreenstein(g)))

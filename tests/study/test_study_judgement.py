@@ -1,59 +1,17 @@
 """What is missing, or has no variance, leaves a judgement open; intervals are no wider than what they are to hold."""
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, replace
-from typing import ClassVar
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from study_fixtures import SMALL, study_from
+from study_levels import COUNTS, MEAN, Law, cell, level, normal
 
-from fogproof.contracts import Reference
-from fogproof.study.aggregate import Level
-from fogproof.study.batches import COLUMNS, _largest, draw_batch, moments_of
-from fogproof.study.cells import cells_of
+from fogproof.study.batches import COLUMNS, draw_batch
 from fogproof.study.convergence import Z, order_of
 from fogproof.study.judgement import judge
 from fogproof.study.methods import table as methods
-from fogproof.study.methods.method import Method
 from fogproof.study.plan import batches_of
-
-MEAN = 2.0
-COUNTS = (256, 4096)
-
-
-@dataclass(frozen=True)
-class Law(Method):
-    """MEAN plus what `off` draws: `off(rng, shape)`."""
-
-    off: Callable
-    quantity: ClassVar[str] = "transmittance"
-
-    def make(self, scene, count):
-        return self
-
-    def draw(self, rng, n):
-        return MEAN + self.off(rng, n)
-
-
-def normal(rng, shape):
-    return rng.normal(size=shape)
-
-
-def cell(off=normal):
-    one = cells_of(study_from({**SMALL, "samples": COUNTS}))[0]
-    one = replace(one, index=0, method=Law(off), points="random", _made={})
-    one.__dict__["reference"] = Reference(np.asarray(MEAN), np.asarray(1e-15), "", "")
-    return one
-
-
-def level(x):
-    squares = moments_of(np.square(x - MEAN).reshape(1, -1))[0]
-    tail = _largest(np.abs(x - MEAN).ravel())
-    return Level(
-        x.shape[1], moments_of(x), len(x), squares, tail, math.nan, np.full(2, 1e-3), 1e-6, 1, 1e-3, np.empty((0, 4))
-    )
 
 
 def levels(off):

@@ -99,10 +99,15 @@ def _biased(old: dict[str, Any], young: dict[str, Any], alpha: float) -> list[st
         offs = [e["bias"]["value"] if e["bias"] else 0.0 for e in (old, young)]
         worse = abs(offs[1]) > 2 * abs(offs[0]) and young["outcome"] == "rejected"
         return ["biased"] if worse else []
-    if young["points"] == "sobol" or old["moments"] == young["moments"]:
+    if young["points"] == "sobol" or old["moments"] == young["moments"] or not _independent(old, young):
         return []
     finding = difference_test("difference", _moments(old), _moments(young), alpha)
     return ["different"] if finding.outcome == "rejected" else []
+
+
+def _independent(*runs: dict[str, Any]) -> bool:
+    """Return whether realisations are independent of each other as far as was seen: else their moments say nothing of a mean."""
+    return all(run.get("calls", "independent") == "independent" for run in runs)
 
 
 def _ratio(old: dict[str, Any], young: dict[str, Any]) -> dict[str, float] | None:

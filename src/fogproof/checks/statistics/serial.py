@@ -12,6 +12,7 @@ import math
 from dataclasses import dataclass, fields
 
 import numpy as np
+from numpy.lib.stride_tricks import as_strided
 
 from fogproof.checks.statistics.cells import MISS
 from fogproof.checks.statistics.tails import normal_quantile
@@ -99,20 +100,19 @@ def _halves(d: list[np.ndarray], second: int, first: bool) -> list[np.ndarray]:
 
 
 def _lagged(c: list[np.ndarray]) -> np.ndarray:
-    """Return (64, k, k) sums of products of scores 1 to 64 apart, by two matrix products over rows of 64 samples."""
+    """Return (64, k, k) sums of products of scores 1 to 64 apart, by two matrix products over rows of 64 samples.
+
+    Within a row and from a row to the next one, gram[a, i, b, j] sums score a at place i times score b at place j, j up to 127: a
+    lag is a diagonal, j - i.
+    """
     k = len(c)
     rows = np.concatenate([one.reshape(-1, LAGS) for one in c], axis=1)
-    place = np.arange(LAGS)
-    apart = place - place[:, None]
-    result = np.zeros((LAGS + 1, k, k))
-    for gram, shift in ((rows.T @ rows, 0), (rows[:-1].T @ rows[1:], LAGS)):
-        lag = (apart + shift).ravel()
-        used = (lag >= 1) & (lag <= LAGS)
-        for a in range(k):
-            for b in range(k):
-                block = gram[a * LAGS : (a + 1) * LAGS, b * LAGS : (b + 1) * LAGS].ravel()
-                result[:, a, b] += np.bincount(lag[used], block[used], LAGS + 1)
-    return np.rint(result[1:]).astype(np.int64)
+    gram = np.empty((k, LAGS, k, 2 * LAGS))
+    gram[..., :LAGS] = (rows.T @ rows).reshape(k, LAGS, k, LAGS)
+    gram[..., LAGS:] = (rows[:-1].T @ rows[1:]).reshape(k, LAGS, k, LAGS)
+    a, i, b, j = gram.strides
+    diagonals = as_strided(gram[..., 1:], (LAGS, k, k, LAGS), (j, a, b, i + j), writeable=False)
+    return np.rint(diagonals.sum(axis=3)).astype(np.int64)
 
 
 def in_units(scores: np.ndarray) -> np.ndarray:

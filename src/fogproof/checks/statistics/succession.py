@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from fogproof.checks.statistics.evenness import CALLS, GROUPS
 from fogproof.checks.statistics.moments import mean_of
@@ -15,6 +16,9 @@ WAYS = (*(f"{lag} apart" for lag in LAGS), "half a call apart", "mirrored in the
 WINDOW = 64  # realisations of a stretch
 _SOME = np.uint64(63)  # a stretch begins where so many bits of a fingerprint are zero, wherever that is
 _MOST_WINDOWS = 1 << 14  # remembered
+_WEIGHTS = np.cumprod(
+    np.full(WINDOW, 0x9E3779B97F4A7C15, dtype=np.uint64)
+)  # odd powers: order matters, and every one counts
 _ENOUGH = 50 * GROUPS  # realisations of a call whose values are counted cell by cell
 _REMEMBERED = 1 << 17  # realisations whose fingerprints are kept
 
@@ -135,7 +139,4 @@ def _stretches(prints: np.ndarray) -> np.ndarray:
             prints[:-3] + np.uint64(3) * prints[1:-2] + np.uint64(5) * prints[2:-1] + np.uint64(7) * prints[3:]
         )
         starts = np.flatnonzero((several[: len(prints) - WINDOW + 1] & _SOME) == 0)[: _MOST_WINDOWS // 4]
-        total = np.zeros(len(starts), dtype=np.uint64)
-        for i in range(WINDOW):
-            total = _mixed(total + prints[starts + i])
-    return total
+        return _mixed(sliding_window_view(prints, WINDOW)[starts] @ _WEIGHTS)

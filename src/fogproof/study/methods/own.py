@@ -4,7 +4,7 @@ The module lies beside the study file or is installed. The class, or a function 
 `Estimator(scene, **options)`; the scene is a `Question`, with `built_medium`, `ray`, `light`, `ambient`, …. What it makes has
 
     draw       (rng, n) -> (n,) independent realisations of the scene's quantity, or `Draws` with their cost; all chance comes
-               from rng, the workers' threads may call it at the same time
+               from rng, the workers' threads may call it at the same time. A call may stratify them, or pair them antithetically
     variance   the exact variance of a realisation, a number or a `Reference`; may be missing
     bounds     two numbers between which every realisation lies; may be missing. With both, even skewed ones are judged
 
