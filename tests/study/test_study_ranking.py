@@ -71,7 +71,7 @@ def test_a_sentence_says_no_more_than_the_intervals(status):
         seen.add(bool(beside))
         if beside:
             names = " and ".join(m.name for m in beside)
-            assert re.match(rf"{first.name} is first: 1 % .*, not to be told from {names}[;.]", head.lower())
+            assert re.match(rf"{first.name} is first: 1 %.*, not to be told from {names}[;.]", head.lower())
         else:
             assert head.lower().startswith(f"{first.name} is soonest: 1 %")
     assert seen == {True, False}
