@@ -1,6 +1,7 @@
 """Subjects that kill their parent, raise what means Ctrl-C, or write to stdout: told as theirs, and no other's result is lost."""
 
 import json
+import multiprocessing.forkserver
 import os
 import signal
 import subprocess
@@ -204,6 +205,13 @@ def test_the_last_thing_it_does_is_seen(run):
     with pytest.raises(SubjectError, match=KILLED):
         run(kills_its_parent)
     assert run(stops_its_parent) == 3
+
+
+@POSIX
+def test_a_server_of_processes_that_is_killed_is_started_again():
+    assert isolated(int) == 0
+    os.kill(multiprocessing.forkserver._forkserver._forkserver_pid, signal.SIGKILL)
+    assert isolated(int) == 0
 
 
 @POSIX
