@@ -235,3 +235,15 @@ def test_main_in_a_callers_process_leaves_its_stdout_alone():
     """)
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert (done.stdout[:15], done.stdout[-4:]) == ("fog/analog/haze", "mine"), done
+
+
+@POSIX
+def test_what_a_subject_writes_is_not_on_a_callers_stdout():
+    code = """if True:
+        import functools, os
+        from fogproof.checks.limits import isolated
+        isolated(functools.partial(os.write, 1, b"theirs"))
+        print("mine")
+    """
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert (done.stdout, "theirs" in done.stderr) == ("mine\n", True)
