@@ -36,6 +36,28 @@ def test_a_mean_without_a_variance_is_not_judged_and_says_why():
     assert "infinite variance suspected" in judged.findings[0].message
 
 
+def test_what_would_not_have_shown_an_error_as_large_as_the_reference_is_not_called_unbiased():
+    rng = np.random.default_rng()
+    few = np.zeros((16, COUNTS[1]))
+    few[[0, 3, 7], 5] = 16 * COUNTS[1] / 3
+    judged = judge(cell(), [level(MEAN * few)], None, 1e-9)
+    assert (judged.outcome, judged.lacks) == ("inconclusive", "resolution")
+    assert "an error as large as the reference itself" in judged.findings[0].message
+    assert judged.times_as_many == (judged.findings[0].resolution.value / MEAN) ** 2 > 10
+    for spread, lacks in ((0.1 * math.sqrt(COUNTS[1]), ""), (100.0, "resolution")):
+        wide = [level(MEAN + spread * MEAN * rng.normal(size=(16, n))) for n in COUNTS]
+        assert judge(cell(), wide, None, 1e-9).lacks == lacks
+
+
+def test_few_values_of_a_normal_law_are_few_and_not_skewed():
+    rng = np.random.default_rng()
+    judged = judge(cell(), [level(MEAN + 0.1 * rng.normal(size=(32, n))) for n in (1, 2)], None, 1e-9)
+    assert (judged.outcome, judged.lacks) == ("inconclusive", "samples")
+    assert judged.times_as_many >= 100 / 96
+    skewed = judge(cell(), [level(rng.exponential(size=(16, n))) for n in (16, 64)], None, 1e-9)
+    assert skewed.lacks == "law"
+
+
 def test_deviations_are_from_the_reference(monkeypatch):
     """An estimator that is off by three standard deviations errs by that, whatever its variance."""
     monkeypatch.setitem(methods.METHODS, "law", Law)

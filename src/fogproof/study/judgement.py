@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
 from fogproof.checks import Finding
 from fogproof.checks.statistics.heavy import TailEstimate
 from fogproof.checks.statistics.known import NOTHING, Known
-from fogproof.checks.statistics.means import mean_test
+from fogproof.checks.statistics.means import LEAST, mean_test
 from fogproof.checks.statistics.moments import ORDINARY, Moments
 from fogproof.checks.statistics.tails import normal_quantile
 from fogproof.checks.statistics.two_values import two_valued
@@ -20,8 +21,10 @@ from fogproof.contracts import Reference
 from fogproof.study.aggregate import Level, pooled
 from fogproof.study.between_replicates import BetweenReplicates, Calls, between_replicates
 from fogproof.study.cells import Cell
+from fogproof.study.question import UNITS
 from fogproof.study.replicate_means import as_calls_allow, judged_by_replicates
 
+Lack = Literal["", "samples", "law", "resolution", "calls", "range"]
 EPS = float(np.finfo(float).eps)
 ROUNDING = 1e-12
 """Relative difference to the reference that sums in another order may make."""
@@ -39,6 +42,9 @@ class Judged:
     warning  about heavy tails, "" if there is none
     times_as_many  how many times as many realisations would decide about the mean, as far as can be foreseen; 1 if nothing is open
     calls    how the realisations of a call go together
+    lacks    what an open judgement lacks: "samples", too few of whatever law; "law": samples for so skewed values; "resolution": an
+             error as large as the reference would not have been seen; "calls": calls, to tell whether their realisations are
+             independent; "range": numbers that binary64 has powers of; "" else
     """
 
     outcome: Outcome
@@ -46,6 +52,7 @@ class Judged:
     warning: str
     times_as_many: float = 1.0
     calls: Calls = "independent"
+    lacks: Lack = ""
 
     @property
     def wrong(self) -> frozenset[str]:
@@ -88,6 +95,7 @@ def judge(cell: Cell, levels: Sequence[Level], variance: Reference | None, alpha
     findings: list[Finding] = []
     warning, times_as_many = "", 1.0
     calls: Calls = "independent"
+    lacks: Lack = ""
     if bad:
         findings.append(
             Finding("finite values", "rejected", f"{bad} realisations are not finite", cause="not a number")
@@ -95,8 +103,8 @@ def judge(cell: Cell, levels: Sequence[Level], variance: Reference | None, alpha
     elif not any(len(level.rows) for level in levels):
         findings.append(Finding("mean", "inconclusive", "nothing has been drawn"))
     elif out_of_range(cell, levels):
-        rule = f"differ by less than {1 / ORDINARY:.1g}, or reach {ORDINARY:.1g}: their powers leave binary64; choose other units"
-        findings.append(Finding("range", "inconclusive", f"realisations about {value:.3g} {rule}"))
+        findings.append(_out_of_range(cell, value))
+        lacks = "range"
     elif cell.method.axis != "samples":
         findings.append(_exact(cell, levels, value, error))
     elif cell.points == "sobol":
@@ -106,7 +114,9 @@ def judge(cell: Cell, levels: Sequence[Level], variance: Reference | None, alpha
         known = _known(cell, variance, data.low == data.high)
         between = between_replicates(levels, alpha)
         mean = mean_test("mean", "mean", data, value, error, alpha, known=known)
-        findings.append(as_calls_allow(mean, between, _by_replicates(levels[-1], value, error, alpha)))
+        mean = as_calls_allow(mean, between, _by_replicates(levels[-1], value, error, alpha))
+        coarse = _coarse(mean, value)
+        findings.append(coarse or mean)
         if data.low < known.low or data.high > known.high:
             told = f"realisations reach from {data.low:.6g} to {data.high:.6g}, declared are {known.low:g} to {known.high:g}"
             findings.append(Finding("bounds", "rejected", told, cause="contract"))
@@ -116,13 +126,17 @@ def judge(cell: Cell, levels: Sequence[Level], variance: Reference | None, alpha
         warning = _heavy(levels, data, value)
         if warning and variance is None and "infinite" in warning:
             findings[0] = replace(findings[0], outcome="inconclusive", message=f"{findings[0].message}; {warning}")
-        elif findings[0].outcome == "inconclusive":
-            times_as_many = _wanted(data, alpha)
+        elif coarse:
+            lacks, times_as_many = "resolution", _finer(mean, value)
+        elif calls == "doubtful" and "inconclusive" in (mean.outcome, findings[-1].outcome):
+            lacks, times_as_many = "calls", 4.0
+        elif mean.outcome == "inconclusive":
+            lacks, times_as_many = "samples" if data.n < LEAST else "law", _wanted(data, alpha)
     if not all(level.complete for level in levels) or len(levels) < len(cell.counts):
         findings.append(Finding("completeness", "inconclusive", "batches are missing"))
     outcomes = [f.outcome for f in findings if f.outcome == "rejected" or f.check != "variance"]
     outcome: Outcome = next((o for o in ("rejected", "inconclusive") if o in outcomes), "not rejected")
-    return Judged(outcome, tuple(findings), warning, times_as_many, calls)
+    return Judged(outcome, tuple(findings), warning, times_as_many, calls, lacks)
 
 
 def _known(cell: Cell, variance: Reference | None, alike: bool) -> Known:
@@ -141,7 +155,27 @@ def _known(cell: Cell, variance: Reference | None, alike: bool) -> Known:
 def _wanted(data: Moments, alpha: float) -> float:
     """Return how many times as many realisations make the correction for skewness small enough; it falls with their root."""
     exponent = abs(data.skewness) / (3 * math.sqrt(max(data.n, 1))) * normal_quantile(alpha / 2) ** 3
-    return max(4.0, exponent**2)
+    return max(LEAST / data.n, exponent**2) if data.n < LEAST else max(4.0, exponent**2)
+
+
+def _coarse(mean: Finding, value: float) -> Finding | None:
+    """Return a mean that was not rejected as an open one where an error as large as the reference would not have been seen."""
+    if mean.outcome != "not rejected" or mean.resolution is None or not 0 < abs(value) < mean.resolution.value:
+        return None
+    message = f"{mean.message}; an error as large as the reference itself would not have been seen"
+    return replace(mean, outcome="inconclusive", message=message, p_value=None)
+
+
+def _finer(mean: Finding, value: float) -> float:
+    """Return how many times as many realisations see an error as large as the reference: resolutions fall with their root."""
+    assert mean.resolution is not None
+    return max(2.0, (mean.resolution.value / abs(value)) ** 2)
+
+
+def _out_of_range(cell: Cell, value: float) -> Finding:
+    rule = f"differ by less than {1 / ORDINARY:.1g}, or reach {ORDINARY:.1g}: their powers leave binary64"
+    units = "; choose other units" if UNITS[cell.scene.quantity] != "1" else ""
+    return Finding("range", "inconclusive", f"realisations about {value:.3g} {rule}{units}")
 
 
 def inherited(judged: Judged, twin: Judged) -> Judged:

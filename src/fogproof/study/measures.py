@@ -24,6 +24,8 @@ from fogproof.study.replicate_means import student_quantile
 from fogproof.study.scatter import degrees_of_freedom, kurtosis, spread
 from fogproof.study.speed import Times, times_of
 
+_COARSE = 0.1
+"""Of the reference: what would not show a smaller bias is called unbiased to so much alone."""
 _LEVEL = 0.2
 """An error of which so much stays for good is on its way to a level, not down a power of the count."""
 
@@ -108,7 +110,16 @@ def measure(
     }
     measured = Measured(cell, judged, reaches, record, failed)
     record["status"] = measured.status
+    record["unbiased_to"] = _unbiased_to(measured)
     return measured
+
+
+def _unbiased_to(m: Measured) -> float | None:
+    """Return the smallest bias that would have been seen, as a share of the reference, where that is coarse; None elsewhere."""
+    if m.status != "passed" or m.cell.points != "random":
+        return None
+    seen = next((f.resolution.relative for f in m.judged.findings if f.check == "mean" and f.resolution), None)
+    return seen if seen is not None and seen >= _COARSE else None
 
 
 def _label(cell: Cell) -> str:
