@@ -52,7 +52,9 @@ def isolated(check: Callable[[], Answer], seconds: float | None = None, preload:
         try:
             return _answer_of(servers.context(list(preload)), seconds, check)
         except OSError as error:
-            if not isinstance(error, ConnectionError) or tries + 1 == _TRIES:
+            if (
+                not isinstance(error, ConnectionError | BlockingIOError) or tries + 1 == _TRIES
+            ):  # the latter: it ended meanwhile
                 raise _no_process(error) from None
             time.sleep(servers.ENDING)
     raise AssertionError("unreachable")
