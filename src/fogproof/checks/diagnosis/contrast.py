@@ -11,6 +11,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import combinations, product
 
 import numpy as np
 
@@ -28,6 +29,7 @@ _BACKGROUND = 1e-4  # of the known law is added to every density: one stray poin
 _CELLS = 256
 _WAVES = 4  # along each axis
 _MOST_AXES = 6  # along which there are waves
+_FEW_AXES = 3  # of which the products of second waves are taken too
 _PER_CELL = 64  # points in a cell, at least
 _ROUNDED = 1 << 12  # pilot points at which the effect of rounding is looked at
 _BEGUN = 512  # points that tell where to begin
@@ -130,7 +132,9 @@ class Contrast:
 
     @cached_property
     def waves(self) -> np.ndarray:
-        """Return 1 and cosines (n + m, k) of up to four half waves along each of the first axes, at all points.
+        """Return 1, cosines of up to four half waves along each of the first axes, and products of two axes' first, at all points.
+
+        (n + m, 1 + 4 k + pairs) for k axes, of few of them with the products of the second ones.
 
         By Chebyshev's recurrence, cos (k + 1) t = 2 cos t cos k t - cos (k - 1) t.
         """
@@ -140,7 +144,9 @@ class Contrast:
         waves[1] = np.cos(np.pi * u.T)
         for order in range(2, _WAVES + 1):
             waves[order] = 2 * waves[1] * waves[order - 1] - waves[order - 2]
-        return np.concatenate([waves[0, :1], *waves[1:]]).T
+        orders = list(product((1, 2) if k <= _FEW_AXES else (1,), repeat=2))
+        pairs = [waves[a, i] * waves[b, j] for i, j in combinations(range(k), 2) for a, b in orders]
+        return np.concatenate([waves[0, :1], *waves[1:], np.array(pairs).reshape(-1, len(u))]).T
 
     def _explained(self, s: np.ndarray) -> tuple[float, float, np.ndarray]:
         """Return the likelihood of a density, the logarithm of its best constant, and the odds of each point to be a sample."""

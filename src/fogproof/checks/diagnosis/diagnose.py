@@ -10,7 +10,15 @@ import numpy as np
 from fogproof.checks.diagnosis import holes
 from fogproof.checks.diagnosis.causes import likely_cause
 from fogproof.checks.diagnosis.contrast import Contrast, Fit
-from fogproof.checks.diagnosis.explaining import PLAIN, SIZES, contrasted, explained_by, explanation, setting_of
+from fogproof.checks.diagnosis.explaining import (
+    PLAIN,
+    SIZES,
+    contrasted,
+    explained_by,
+    explanation,
+    refused,
+    setting_of,
+)
 from fogproof.checks.diagnosis.factors import named_factor
 from fogproof.checks.diagnosis.fitting import likeliest
 from fogproof.checks.diagnosis.hypothesis import Setting
@@ -88,7 +96,7 @@ def _explained(subject: Subject, cause: str, findings: Sequence[Finding], sample
         return _COARSE, few
     if named == "clamped" or (named == "atom" and often > _MOSTLY):  # with what lies beyond: all of its misfit
         return named, words
-    if named == "sheet" and not few and (told := _beside_a_sheet(rest, words, samples, seed)):
+    if named == "sheet" and not few and (told := _beside_a_sheet(rest, words, findings, samples, seed)):
         return told
     if few or cause == _COARSE:
         return _COARSE, few
@@ -115,12 +123,19 @@ def _few_values(subject: Subject, samples: int, seed: int) -> str:
     return few_values(contrast, subject) if contrast else ""
 
 
-def _beside_a_sheet(rest: Subject, words: str, samples: int, seed: int) -> tuple[str, str] | None:
-    """Return that one coordinate is a constant too often, if the other samples fit the claim; None if they do not."""
+def _beside_a_sheet(
+    rest: Subject, words: str, findings: Sequence[Finding], samples: int, seed: int
+) -> tuple[str, str] | None:
+    """Return that one coordinate is a constant too often, and what is with the other samples; None if there are too few of them."""
     shown = contrasted(rest, samples, seed)
-    if shown is None or shown[1].left > _MISFIT * math.sqrt(2 * shown[1].freedom):
+    if shown is None:
         return None
-    return "atom", f"{words}; the other samples fit the pdf"
+    if shown[1].left <= _MISFIT * math.sqrt(2 * shown[1].freedom):
+        return "atom", f"{words}; the other samples fit the pdf"
+    other, why = _searched(rest, "shape", findings, samples, seed)
+    return (
+        (other, f"{words}; of the others, {why}") if why else ("atom", f"{words}; the others do not fit the pdf either")
+    )
 
 
 def _searched(
@@ -140,7 +155,7 @@ def _searched(
         if integral is not None and _off_by_atoms(integral, findings, samples):
             return "wrong probability of an atom", rejected["atom"].message
         if integral is not None:
-            shaped = any(f.p_value is not None and f.cause in _STATISTICAL for f in rejected.values())
+            shaped = {name for name, f in rejected.items() if f.p_value is not None and f.cause in _STATISTICAL}
             return _constant(subject, integral, cause, shaped, samples, seed)
     shown = contrasted(subject, samples, seed)
     if shown is None:
@@ -162,7 +177,8 @@ def _searched(
         and (told := dependent(subject, subject.domain, samples, seed))
     ):
         return "correlation", told
-    return "shape" if cause in _PLACES and base.left > PLAIN else cause, ""
+    bulk = any(f.p_value is not None and f.cause in _STATISTICAL - _PLACES for f in rejected.values())
+    return "shape" if cause in _PLACES and (bulk or base.left > PLAIN) else cause, ""
 
 
 def _undeclared_atom(
@@ -228,11 +244,11 @@ def _exponential(subject: Subject, samples: int, seed: int) -> str:
 
 
 def _constant(
-    subject: Subject, integral: Finding, cause: str, shaped: bool, samples: int, seed: int
+    subject: Subject, integral: Finding, cause: str, shaped: set[str], samples: int, seed: int
 ) -> tuple[str, str]:
     """Return what a wrong integral of the pdf comes from: a constant that can be named, or a pdf where nothing is sampled.
 
-    shaped  whether a test rejects the shape of the pdf, which no constant factor changes
+    shaped  tests that reject the shape of the pdf: no constant factor changes that, but for labels, which take the pdf as it is
     """
     setting = setting_of(subject, min(samples, SIZES[-1 if shaped else 0]), seed)
     if setting is None or integral.effect is None:
@@ -249,9 +265,10 @@ def _constant(
             )
     if plain or shaped:
         told = explanation(subject, setting, base, samples, seed)
-        if told is None:
+        if told is not None:
+            return cause if cause == "wrong measure" else told[0], told[1]
+        if refused(setting, base, setting.values) or not all(name.startswith("labels") for name in shaped):
             return cause, f"the pdf integrates to {factor:.6g}, and divided by that it still does not fit the samples"
-        return cause if cause == "wrong measure" else told[0], told[1]
     error = integral.resolution.value if integral.resolution else 0.0
     more = {
         "the measure of the domain": subject.domain.measure,

@@ -13,7 +13,7 @@ from fogproof.checks.diagnosis import directions, holes, lines, numbers, parts, 
 from fogproof.checks.diagnosis.contrast import Contrast, Fit, claimed
 from fogproof.checks.diagnosis.fitting import TIE, Explained, judged, likeliest, nearest, sharpened
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting
-from fogproof.checks.diagnosis.shape import unexplained
+from fogproof.checks.diagnosis.shape import unexplained, unseen
 from fogproof.checks.streams import batch_generator
 from fogproof.checks.subject import Subject
 from fogproof.domains import (
@@ -48,7 +48,7 @@ _NUMBER = re.compile(r"[-+]?[0-9][-+0-9.e]*")
 def explanation(subject: Subject, setting: Setting, base: Fit, samples: int, seed: int) -> tuple[str, str] | None:
     """Return the class of error and the words of the one hypothesis that explains a misfit, None if none does.
 
-    It must gain more than any general correction of the claim would, and leave little to such. Where another gains as much, and
+    No general correction of the claim must gain clearly more, and it must leave little to such. Where another gains as much, and
     takes no more numbers from the samples, the class is "shape"; the words name both. What the samples refuse in its turn is said
     to be near, and its class is "shape" too, except that a place without samples is one whatever the others are.
     """
@@ -58,40 +58,64 @@ def explanation(subject: Subject, setting: Setting, base: Fit, samples: int, see
     best = found[0]
     gain, share = explained_by(many, best)
     needed = _FITS if best.hypothesis.cause == "another law" else _EXPLAINS
-    if gain < _STANDS_OUT or share < needed or gain < unexplained(many.contrast, many.values) + _CLEARLY:
+    if gain < _STANDS_OUT or share < needed or gain < unexplained(many.contrast, many.values) - _CLEARLY:
         return None
     near = [each for each in found[1:] if each.cause != best.cause and each.score > best.score - _CLEARLY]
-    if share < _ALL_BUT and not best.hypothesis.loose and refused(many, best):
-        most = math.floor(1000 * share) / 10
-        told = (
-            f"near to, but not: {best.words} (this explains {most:.1f}% of the misfit, and what is left is no chance)"
-        )
+    if share < _ALL_BUT and not best.hypothesis.loose and refused(many, best.fit, best.density(many)):
+        most = f"{math.floor(1000 * share) / 10:.1f}%"
+        told = f"near to, but not: {best.words} (this explains {most} of the misfit, and what is left is no chance)"
         return best.cause if best.cause in _PLACES else "shape", told
-    told = f"{best.words} (this explains {share:.0%} of the misfit)"
+    least = share * gain / (gain + unseen(many.contrast))
+    most = f"{share:.0%}" if least > _EXPLAINS else f"at least {math.floor(100 * least)}%"  # what more samples may show
+    told = f"{best.words} (this explains {most} of the misfit)"
     if not near:
         return best.cause, told
     if all(abs(each.fit.likelihood - best.fit.likelihood) < _SAME for each in near):
-        others = dict.fromkeys(each.words for each in near)
+        others = _different(best, near)
         return best.cause, f"{told}; that is the same as: {'; '.join(others)}"
     if best.numbers < min(each.numbers for each in near):  # of laws that fit alike, the one that needed no fitting
-        others = dict.fromkeys(each.words for each in near)
+        others = _different(best, near)
         return best.cause, f"{told}; more samples would tell it from: {'; or '.join(others)}"
-    alike = dict.fromkeys(each.words for each in (best, *near))
+    alike = [best.words, *_different(best, near)]
     return "shape", f"several hypotheses explain it alike: {'; or '.join(alike)}"
 
 
+def _different(best: Explained, others: list[Explained]) -> list[str]:
+    """Return the words of others than the best, of those that differ by numbers alone the first."""
+    told = {_NUMBER.sub("", each.words): each.words for each in (*reversed(others), best)}
+    return [words for words in dict.fromkeys(told.values()) if words != best.words][::-1]
+
+
 def explained_by(setting: Setting, found: Explained) -> tuple[float, float]:
-    """Return the log-likelihood that a hypothesis gains over the claim, and which share that is of what could be gained."""
-    gain = found.score - setting.contrast.likelihood(setting.values)
-    left = unexplained(setting.contrast, found.density(setting))
-    return gain, gain / (gain + left) if gain > 0 else 0.0
+    """Return the log-likelihood that a hypothesis gains over the claim, and which share that is of what could be gained.
+
+    Where samples lie at density 0, whatever fills that hole gains nearly all: the share is of what is gained beyond filling it.
+    """
+    contrast = setting.contrast
+    gain = found.score - contrast.likelihood(setting.values)
+    if gain <= 0:
+        return gain, 0.0
+    left = unexplained(contrast, found.density(setting))
+    told = gain if left == 0 else found.score - max(contrast.likelihood(s) for s in (setting.values, _filled(setting)))
+    return gain, max(told, 0.0) / (max(told, 0.0) + left)
 
 
-def refused(setting: Setting, found: Explained) -> bool:
-    """Return whether the samples differ by more than chance from a fitted hypothesis, in cells or by a general correction."""
-    if found.fit.left > _MISFIT * math.sqrt(2 * found.fit.freedom):
+def _filled(setting: Setting) -> np.ndarray:
+    """Return the claim with a rate of the known law where it is 0: as many samples as lie there."""
+    n, (s, q) = len(setting.contrast.x), (setting.values, setting.contrast.q)
+    hole = ~(s > 0)
+    lie, known = np.count_nonzero(hole[:n]), np.count_nonzero(hole[n:])
+    if lie == 0 or known == 0 or lie == n:
+        return s
+    scale = float(np.sum(s[n:] / q[n:])) / (n - lie)  # of the claim, a sample
+    return np.where(hole, scale * lie / known * q, s)
+
+
+def refused(setting: Setting, fit: Fit, s: np.ndarray) -> bool:
+    """Return whether the samples differ by more than chance from a density with values s, in cells or by a general correction."""
+    if fit.left > _MISFIT * math.sqrt(2 * fit.freedom):
         return True
-    return unexplained(setting.contrast, found.density(setting)) > _CLEARLY
+    return unexplained(setting.contrast, s) > _CLEARLY
 
 
 def _candidates(

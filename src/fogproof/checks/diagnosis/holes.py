@@ -15,6 +15,7 @@ _SOME = 0.4  # share of samples that may follow another law: most do not
 _NEARLY_ALL = 0.9  # of a hole
 _BESIDE = 30  # samples
 _END = 1e-9  # of an axis
+_PLACED, _CONSTANT = 16, 1e-6  # points, and what differs among them by no more of a stretch is told by it
 _ENDLESS = 1e300  # beyond all numbers, as a known law has it
 _QUARTERS = {
     1: ", a quarter of the turn: as of an azimuth that misses a quadrant",
@@ -65,7 +66,7 @@ def along(setting: Setting, axis: int) -> Iterator[Hypothesis]:
         first, last = _degrees(low), _degrees(high)
         where = f"the azimuths from {first:.4g} to {last:.4g} degrees{name.removeprefix('phi')}{guess}"
     else:
-        where = f"the share {low:.4g} to {high:.4g} of the axis {name}"
+        where = _between(setting, axis, low, high)
     end = not turn and (low <= _END or high >= 1 - _END or not _any_beyond(setting, axis, low, high))
 
     def density(x: np.ndarray) -> np.ndarray:
@@ -76,6 +77,23 @@ def along(setting: Setting, axis: int) -> Iterator[Hypothesis]:
     cause = "missing tail" if end else "skipped band"
     words = f"no sample lies in {where}; the others fit the pdf"
     yield Hypothesis(cause, words, lambda s, _: density, fitted=not exact)  # as far as a sample that bounds it
+
+
+def _between(setting: Setting, axis: int, low: float, high: float) -> str:
+    """Return in words where a stretch of an axis is: in what of the points changes along it and along no other one."""
+    law, ends = setting.law, (max(low, _END), min(high, 1 - _END))
+    u = np.random.default_rng(0).random((2, _PLACED, len(law.axes)))
+    u[:, :, axis] = np.array(ends)[:, None]
+    x = np.stack([law.place(each) for each in u]).reshape(2, _PLACED, -1)
+    readings = {f"x[{column}]": x[:, :, column] for column in range(x.shape[2])} | {"|x|": np.linalg.norm(x, axis=2)}
+    for name, value in readings.items():
+        (first, spread), (last, other) = ((float(v.mean()), float(np.ptp(v))) for v in value)
+        if max(spread, other) < _CONSTANT * abs(last - first):
+            if low <= _END or high >= 1 - _END:
+                below = (low <= _END) == (last > first)
+                return f"{name} {'<' if below else '>'} {last if low <= _END else first:.4g}"
+            return f"{min(first, last):.4g} < {name} < {max(first, last):.4g}"
+    return f"the share {low:.4g} to {high:.4g} of the axis {law.axes[axis]} of the domain's known law"
 
 
 def _coordinate(setting: Setting, x: np.ndarray, axis: int) -> np.ndarray:

@@ -37,6 +37,7 @@ _NAMES = {
 _EXPONENTS = known_number(
     {1 / k if "taken" in words and "log" not in words else k: words for k, words in _NAMES.items()}
 )
+_EXPONENT = "these samples fit the pdf of an exponent {value} times as large"
 _STRETCHES = {1 / k if "log" in words else k: words for k, words in _NAMES.items()}
 STRETCHED = known_number(_STRETCHES)
 
@@ -98,14 +99,19 @@ def _turned_or_shifted_round(domain: Interval) -> Iterator[Hypothesis]:
 
 def _of_another_scale(setting: Setting, origin: float) -> Iterator[Hypothesis]:
     """Yield a stretch, and a power of the pdf: that is another scale too where its logarithm is a parabola, or a line."""
-    powers = partial(Hypothesis, density=_to_the_power, trials=SCALES, null=1.0)
+    powers = partial(Hypothesis, density=_to_the_power, trials=SCALES, null=1.0, power=True)
     if _parabolic(setting):
-        yield powers("wrong scale", "these samples fit the pdf of an exponent {value} times as large", named=_EXPONENTS)
+        yield powers("wrong scale", _EXPONENT, named=_EXPONENTS)
         yield _stretched(origin, "")
     else:
         yield _stretched(origin, "")
         words = "these samples fit the pdf raised to the power {value}, as of another parameter of its tails"
         yield powers("another parameter", words)
+
+
+def of_another_exponent(where: str) -> Hypothesis:
+    """Return that the logarithm of the claim is multiplied by a number, as of a normal law of another deviation."""
+    return Hypothesis("wrong scale", _EXPONENT + where, _to_the_power, SCALES, _EXPONENTS, null=1.0, power=True)
 
 
 def _to_the_power(setting: Setting, power: float) -> Density:

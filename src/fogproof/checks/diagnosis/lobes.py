@@ -69,6 +69,7 @@ def powers(setting: Setting) -> Iterator[Hypothesis]:
             lambda s, a: lambda x: np.maximum(s.p(x), 0.0) ** a,
             (0.3, 0.6, 0.8, 0.95, 1.05, 1.25, 1.7, 3.0),
             null=1.0,
+            power=True,
         )
 
 

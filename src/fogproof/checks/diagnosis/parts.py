@@ -10,10 +10,10 @@ from itertools import permutations
 
 import numpy as np
 
-from fogproof.checks.diagnosis import regions
+from fogproof.checks.diagnosis import lines, regions
 from fogproof.checks.diagnosis.contrast import Density
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting
-from fogproof.domains import Discrete, Domain, Product
+from fogproof.domains import Discrete, Domain, HalfLine, Product, RealLine
 
 _SHORT = 4  # entries of a table that may be exchanged
 _WHOLE = {"uniform law", "another law"}  # of a whole point: they say nothing of how one part depends on another
@@ -25,6 +25,8 @@ def hypotheses(
     """Yield what may have happened to all coordinates, if each part is a number, and what may have happened to one part."""
     if all(part.shape == () for part in product.parts):
         yield from regions.hypotheses(setting)
+        if all(isinstance(part, (RealLine, HalfLine)) for part in product.parts):
+            yield lines.of_another_exponent(" in all columns")
     yield from _together(setting, product)
     first = 0
     for part in product.parts:
@@ -77,7 +79,18 @@ def _lifted(hypothesis: Hypothesis, part: Domain, columns: slice | int, name: st
         alone = _part(s, part, columns)
         return lambda x: hypothesis.density(alone, value)(alone.contrast.points if x is s.contrast.points else x)
 
-    return replace(hypothesis, words=hypothesis.words + name, density=density)
+    def of_one(s: Setting, value: float) -> Density:
+        """Return the density of which the other parts are not raised to a power, if they are independent."""
+        raised, usual = density(s, value), s.claimed_points(3)[1, columns]
+
+        def lowered(x: np.ndarray) -> np.ndarray:
+            other = x.copy()
+            other[:, columns] = usual
+            return raised(x) * np.maximum(s.p(other), 1e-300) ** (1 - value)
+
+        return lowered
+
+    return replace(hypothesis, words=hypothesis.words + name, density=of_one if hypothesis.power else density)
 
 
 def _part(setting: Setting, part: Domain, columns: slice | int) -> Setting:

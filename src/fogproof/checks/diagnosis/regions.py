@@ -13,6 +13,7 @@ from fogproof.checks.diagnosis.contrast import Density
 from fogproof.checks.diagnosis.grids import SHIFTS
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting, known_number, of_points
 from fogproof.checks.diagnosis.lines import SCALES, STRETCHED
+from fogproof.domains import Product
 
 _HALF_TURN = 0.01  # radians that chance leaves of it
 _EVEN = 1e-9  # relative difference of densities that are one
@@ -65,7 +66,7 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
     if not np.isfinite(domain.measure):
         yield Hypothesis(
             "wrong scale",
-            "these samples fit the pdf stretched by {value}",
+            "these samples fit the pdf stretched by {value}" + " in all columns" * isinstance(domain, Product),
             lambda s, a: lambda x: s.p(x / a),
             SCALES,
             STRETCHED,
