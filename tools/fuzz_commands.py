@@ -29,7 +29,7 @@ from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, BinaryIO, NamedTuple
 
 from fuzz_files import GIBIBYTE, SECONDS, made, watch
 from fuzz_runs import MAKERS, SHARES, Run
@@ -49,16 +49,16 @@ class Ended(NamedTuple):
 
 
 @contextmanager
-def streams(stdin: bytes) -> Iterator[tuple[io.BytesIO, io.BytesIO]]:
-    """Put bytes in place of the three standard streams."""
-    kept, out, err = (sys.stdin, sys.stdout, sys.stderr), io.BytesIO(), io.BytesIO()
+def streams(stdin: bytes, out: BinaryIO) -> Iterator[io.BytesIO]:
+    """Put bytes in place of stdin and stderr, and a file in place of stdout."""
+    kept, err = (sys.stdin, sys.stdout, sys.stderr), io.BytesIO()
     sys.stdin = io.TextIOWrapper(io.BufferedReader(io.BytesIO(stdin)))  # type: ignore[arg-type]
     sys.stdout, sys.stderr = (
         io.TextIOWrapper(file, "utf-8", "backslashreplace", write_through=True) for file in (out, err)
     )
     mine = sys.stdout, sys.stderr
     try:
-        yield out, err
+        yield err
     finally:
         for stream in mine:
             stream.flush()
@@ -66,11 +66,12 @@ def streams(stdin: bytes) -> Iterator[tuple[io.BytesIO, io.BytesIO]]:
         sys.stdin, sys.stdout, sys.stderr = kept
 
 
-def here(run: Run) -> Ended:
-    """Run it in this process; after `SECONDS` of the processor comes what Ctrl-C is."""
+def here(run: Run, stdout: BinaryIO | None = None) -> Ended:
+    """Run it in this process; after `SECONDS` of the processor comes what Ctrl-C is. `stdout` takes what it prints, if given."""
+    out = io.BytesIO()
     started = time.process_time()
     code: object = "returned"
-    with streams(run.stdin) as (out, err):
+    with streams(run.stdin, stdout or out) as err:
         watch(SECONDS)
         try:
             fogproof(run.words)

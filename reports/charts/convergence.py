@@ -90,17 +90,19 @@ class Convergence:
             axes.line(ends, 1.3 * start * (ends / across.low) ** self.slope, INK, (9, 5), 1)
         labels = [_end_of(curve, axes, up) for curve in self.curves]
         write_labels(sheet, labels, right, 4, bottom + FONT_SIZE, _LETTERS)
-        return self._words()
+        return self._words(up.low)
 
-    def _words(self) -> str:
+    def _words(self, floor: float) -> str:
         lowest = min(self.curves, key=lambda curve: curve.error[-1])
         where = self.across.partition(" [")[0]
         guide = f" The long dashes fall with the power {self.slope:g}." if self.slope else ""
         n, lowest_at = len(self.curves), f"{label(lowest.name, 90)}: {lowest.error[-1]:.2g}"
         missing = f" Without any error, and so not drawn: {', '.join(label(name, 90) for name in self.errorless)}."
+        under = [f"{label(c.name, 90)}, down to {min(c.error):.2g}" for c in self.curves if min(c.error) < floor]
+        below = f" Below the picture, where an arrow points: {'; '.join(under)}." if under else ""
         return (
             f"Error over {where} of {n} estimator{'' if n == 1 else 's'}, both logarithmic, with {self.confidence:.0%} confidence"
-            f" bands. The lowest at its end is {lowest_at}.{guide}{missing if self.errorless else ''}"
+            f" bands. The lowest at its end is {lowest_at}.{guide}{below}{missing if self.errorless else ''}"
         )
 
 
@@ -115,7 +117,8 @@ def _end_of(curve: ErrorCurve, axes: Axes, up: Scale) -> EndLabel:
         at = (x[0], floor) if k == 0 else (x[k - 1] + share * (x[k] - x[k - 1]), floor)
     colour, marker = _look(curve.look)
     (end,) = axes.at([float(np.exp(at[0]))], [float(np.exp(at[1]))])
-    return EndLabel(label(curve.name, 90), colour, end, marker, DASHED if curve.dashed else None)
+    name = label(curve.name, 90) + (" ↓" if len(below) else "")
+    return EndLabel(name, colour, end, marker, DASHED if curve.dashed else None)
 
 
 def _look(number: int) -> tuple[str, Any]:

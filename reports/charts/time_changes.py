@@ -35,8 +35,9 @@ class TimeChanges:
 
     HOW: ClassVar[str] = (
         "Each line is an estimator. The mark is its time in the newer run over that in the older one, the bar the "
-        "interval that holds the truth. On the dashed line nothing changed; to the right it became slower. A square "
-        "changed beyond noise: chance alone, and what a process meets of the machine, hardly ever bring so much."
+        "interval that holds the truth 99 times of 100. On the dashed line nothing changed; to the right it became "
+        "slower. A square changed beyond noise: chance alone, and what a process meets of the machine, bring so much "
+        "once in a million comparisons. A dot whose bar ends before the dashed line has perhaps changed."
     )
 
     @property
@@ -48,7 +49,7 @@ class TimeChanges:
         """Draw ratio and interval of each, those that changed first."""
         ratio, low, high = np.array(self.ratio), np.array(self.low), np.array(self.high)
         order = sorted(range(ratio.size), key=lambda k: (not self.changed[k], -abs(float(np.log(ratio[k])))))[:_LINES]
-        keys = [Key("changed beyond noise", EXPECTED, "square"), Key("as before", OBSERVED, "dot")]
+        keys = [Key("changed beyond noise", EXPECTED, "square"), Key("not beyond noise", OBSERVED, "dot")]
         top = legend(sheet, [*keys, Key("no change", INK, dash=DASHED)], 8, 0, sheet.width - 8) + 4
         names = [cut(self.names[k], _LONGEST * sheet.width) for k in order]
         left = 16 + max(text_width(name, SIZE) for name in names)
@@ -65,8 +66,10 @@ class TimeChanges:
             axes.points([ratio[k]], [y], colour, "square" if marker == "square" else "dot")
         axes.names(names, np.arange(len(order)))
         n, beyond = ratio.size, sum(self.changed)
+        off = sum(not (a <= 1 <= b or changed) for a, b, changed in zip(low, high, self.changed, strict=True))
+        perhaps = f"; {off} more perhaps" if off else ""
         more = f" Shown are {len(order)}." if n > len(order) else ""
         return (
             f"Times of {n} estimator{'' if n == 1 else 's'}, after over before: {ratio.min():.3g} to {ratio.max():.3g}; "
-            f"{beyond or 'none'} changed beyond noise.{more}"
+            f"{beyond or 'none'} changed beyond noise{perhaps}.{more}"
         )

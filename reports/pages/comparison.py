@@ -80,6 +80,7 @@ def write_comparison_page(before: RunRecord, after: RunRecord, folder: Path, his
         picture.save(folder / "figures")
     counts = {change: sum(pair.change == change for pair in pairs) for change in CHANGES}
     still = sum(pair.wrong and pair.change != "worse" for pair in pairs)
+    words = headline(counts, still, len(pairs), history is not None and history.worse)
     page = fill(
         "comparison.html",
         kind="comparison",
@@ -90,7 +91,7 @@ def write_comparison_page(before: RunRecord, after: RunRecord, folder: Path, his
         settings=_settings(before, after),
         figures=figures,
         history=history,
-        headline=headline(counts, still, len(pairs), history is not None and history.worse),
+        headline=(words[0], f"{words[1]}; both are one and the same run") if before == after else words,
         tone="bad"
         if counts["worse"] or still or (history and history.worse)
         else "care"

@@ -24,7 +24,7 @@ from fogproof.reports.files import write_file
 from fogproof.reports.records.figures import require_figures
 from fogproof.reports.validation import adapter
 from fogproof.text import spreadsheet_cell, unfinished
-from fogproof.verify import TwinResult, status_of
+from fogproof.verify import TwinResult, code_of, status_of
 
 SCHEMA = "fogproof/results/1"
 RESULTS = "results.json"
@@ -35,6 +35,9 @@ COLUMNS = (
     *("twin", "twin_outcome", "twin_rejected_by", "twin_p_value", "twin_samples"),
     *("terms", "solver", "estimator", "reproduce"),
 )
+
+_OF_CASES_ALONE = ("verify", "run")
+"""Kinds of runs whose exit code follows from their cases; that of a test session counts all its tests."""
 
 T = TypeVar("T")
 Status = Literal["surprise", "rejected", "error", "inconclusive", "known", "skipped", "passed"]
@@ -117,6 +120,10 @@ def parse_record(record: Any, origin: str = "record") -> RunRecord:
         for index, finding in enumerate(case.verdict.findings if case.verdict is not None else ()):
             if finding.figure is not None:
                 parse_figure(finding.figure, f"{origin}: cases.{number}.verdict.findings.{index}.figure")
+    due_code = code_of((case.status, case.twin_result) for case in run.cases)
+    if run.kind in _OF_CASES_ALONE and run.state == "finished" and run.exit_code != due_code:
+        said = f"must be {due_code}, as the outcomes of its cases are, got {run.exit_code}"
+        raise InvalidInputError(f"{origin}: exit_code {said}", "exit_code")
     return run
 
 

@@ -120,6 +120,8 @@ class StudyEntry:
     findings: tuple[Finding, ...] = ()
     reason: str = ""
     warning: str = ""
+    unbiased_to: float | None = None
+    calls: Literal["independent", "doubtful", "dependent", "stratified"] = "independent"
     options: dict[str, Any] = field(default_factory=dict)
     bias: EstimateRecord | None = None
     variance: Variance | None = None

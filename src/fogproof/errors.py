@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import pickle
+import signal
+import threading
 from typing import Any, ClassVar
 
 
@@ -93,13 +95,34 @@ class SubjectError(FogproofError):
     code = "subject-failed"
 
 
+class Stopped(KeyboardInterrupt):
+    """A signal has asked the run to stop; `code` is what a shell expects of such a process: 128 + the signal's number."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__(signal.Signals(number).name)
+        self.code = 128 + number
+
+
+def is_stop(error: BaseException) -> bool:
+    """Whether an error is a signal's, which asks this process to stop, and not one that somebody else's code has raised.
+
+    Signals are heard by the main thread alone; a handler of ours raises `Stopped`, Python's own a plain KeyboardInterrupt.
+    """
+    if isinstance(error, Stopped):
+        return True
+    if not isinstance(error, KeyboardInterrupt) or threading.current_thread() is not threading.main_thread():
+        return False
+    handler = signal.getsignal(signal.SIGINT)
+    return handler is not signal.SIG_IGN and not getattr(handler, "raises_stopped", False)
+
+
 def stop_behind(error: BaseException) -> KeyboardInterrupt | None:
     """Return the interruption that an error is, or that caused it: code in C may turn one into a SystemError; None otherwise."""
     seen: set[int] = set()
     ahead: list[BaseException | None] = [error]
     while ahead:
         one = ahead.pop()
-        if isinstance(one, KeyboardInterrupt):
+        if isinstance(one, KeyboardInterrupt) and is_stop(one):
             return one
         if one is not None and id(one) not in seen:
             seen.add(id(one))

@@ -9,6 +9,8 @@ import threading
 from collections.abc import Iterator
 from typing import NoReturn
 
+from fogproof.errors import is_stop
+
 
 class EndedProcessError(Exception):
     """Code that was only to be loaded asked for the end of the process."""
@@ -50,6 +52,11 @@ def loading() -> Iterator[None]:
         yield
     except SystemExit as error:
         ended_by = EndedProcessError(f"the code ends the process, exit code {error.code or 0}")
+        raise ended_by.with_traceback(error.__traceback__) from error
+    except BaseException as error:
+        if isinstance(error, Exception) or is_stop(error):
+            raise
+        ended_by = EndedProcessError(f"the code raises {type(error).__name__}, which would end the process")
         raise ended_by.with_traceback(error.__traceback__) from error
     finally:
         os._exit = leave

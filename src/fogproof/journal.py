@@ -33,8 +33,9 @@ def add_line(path: Path, record: Any) -> None:
 
 
 def whole_lines(text: str) -> list[str]:
-    """Return the lines without one that was cut short."""
-    return text[: len(text) - len(_cut_short(text.encode()).decode())].splitlines()
+    """Return the lines without one that was cut short, and without the bytes of zero that a power failure may leave."""
+    whole = text[: len(text) - len(_cut_short(text.encode()).decode())]
+    return [line for held in whole.splitlines() if (line := held.strip("\0"))]
 
 
 def _cut_short(content: bytes) -> bytes:

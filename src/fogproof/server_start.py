@@ -15,6 +15,8 @@ def begin(modules: list[str]) -> None:
     sys.excepthook = lambda kind, error, trace: None  # whoever asked says it: that too many files are open, say
     with contextlib.suppress(OSError, AttributeError):  # it leads one already; a system without sessions
         os.setsid()
+    with contextlib.suppress(OSError):
+        os.dup2(2, 1)  # what other people's code prints, in whatever way, is no part of an answer
     if os.environ.get("PYTHONSAFEPATH") == OURS:
         del os.environ["PYTHONSAFEPATH"]
     for module in modules:

@@ -44,7 +44,8 @@ def context(preload: list[str]) -> Any:
         return multiprocessing.get_context("spawn")
     made = multiprocessing.get_context("forkserver")
     with _lock, _modules(), _environment(PYTHONSAFEPATH=os.environ.get("PYTHONSAFEPATH") or OURS):
-        multiprocessing.resource_tracker.ensure_running()  # before it could carry the word that ends the others
+        with _environment(PYTHONWARNINGS=_quiet(os.environ.get("PYTHONWARNINGS", ""))):
+            multiprocessing.resource_tracker.ensure_running()  # before it could carry the word that ends the others
         _make_folder()
         words = f"{children.words_of(os.environ)} {_WORD}"
         with _environment(**{PRELOAD: ",".join(preload), children.WORDS: words}):
@@ -57,6 +58,14 @@ def end() -> None:
     """End the server and all that it forked: one that still loads what takes long would let whoever asked it wait for that."""
     if os.name == "posix":
         children.end_all((), [_WORD])
+
+
+def _quiet(warnings: str) -> str:
+    """Return what warnings Python shows, but for multiprocessing's watcher of semaphores, which tells of those it removes.
+
+    Whoever is killed leaves some; that they are removed is nothing to be told.
+    """
+    return ",".join(filter(None, (warnings, "ignore:resource_tracker")))
 
 
 def _make_folder() -> None:

@@ -17,6 +17,7 @@ import secrets
 import sys
 from collections import deque
 from collections.abc import Generator, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -66,6 +67,7 @@ def pytest_configure(config: pytest.Config) -> None:
     config.stash[_ALPHA] = alpha
     config.stash[_NEWS], config.stash[_LATE], config.stash[_CRASHED] = deque(), [], []
     atexit.register(_after_all, config.stash[_NEWS])
+    config.add_cleanup(partial(_require_failed, config))  # after whatever tests and their fixtures have asked for
     folder = config.getoption("--fogproof-report")
     if folder == "":
         raise pytest.UsageError("--fogproof-report must name a folder, got '': is a variable of the shell not set?")
@@ -200,11 +202,17 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
     late += _drained(config.stash[_NEWS])
     if hasattr(config, "workeroutput"):
         config.workeroutput["fogproof"] = late
-    if session.exitstatus in (0, _NOTHING) and (
-        any(why for *_, why in late) or _tried_again(config) or _failed(config)
-    ):
-        session.exitstatus = _FAILED
     config.stash[_SESSION] = session
+    _require_failed(config)
+
+
+def _require_failed(config: pytest.Config) -> None:
+    """Fail a session in which a verdict has failed something, whoever has called it good."""
+    session = config.stash.get(_SESSION, None)
+    if session is None or session.exitstatus not in (0, _NOTHING):
+        return
+    if any(why for *_, why in config.stash[_LATE]) or _tried_again(config) or _failed(config):
+        session.exitstatus = _FAILED
 
 
 def _reports(config: pytest.Config, *kinds: str) -> list[Any]:

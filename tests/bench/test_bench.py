@@ -53,7 +53,26 @@ def test_the_record_keeps_its_history_and_says_what_has_changed(tmp_path):
     record = run_record(rows, "2026-01-01", 1.0)
     write_record(record, rows, [benchmark], tmp_path)
     write_record(record, rows, [benchmark], tmp_path)
-    assert len(history(tmp_path)) == 2
+    (path,) = tmp_path.glob("*.jsonl")
+    whole = path.read_bytes()
+    assert history(tmp_path) == ([json.loads(line) for line in whole.splitlines()], 0)
+    first, second = whole.splitlines()
+    for lost in (b"\0" * 40, b"\0" * 40 + b"\n"):  # a machine lost its power
+        path.write_bytes(whole + lost)
+        assert len(history(tmp_path)[0]) == 2
+    for bad in (
+        b"my notes",
+        b"[]",
+        first[:-9],
+        first.replace(b'"ways"', b'"way"'),
+        first.replace(b'"low"', b'"lo"', 1),
+    ):
+        path.write_bytes(bad + b"\n" + second + b"\n")
+        assert history(tmp_path) == ([json.loads(second)], 1)
+    path.write_bytes(b"my notes\n")
+    with pytest.raises(InvalidInputError, match="holds no record of"):
+        history(tmp_path)
+    path.write_bytes(whole)
     prepare_folder(tmp_path, ("bench.json", "bench.md"))  # it is seen to be ours
     assert {way["way"] for way in json.loads((tmp_path / "bench.json").read_text())["ways"]} == set(WAYS)
     assert "Goals not met: ticks, exact." in (tmp_path / "bench.md").read_text()

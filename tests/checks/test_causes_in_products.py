@@ -46,6 +46,21 @@ CASES = {  # sampler, pdf, domain, dimensions; the cause and words of what expla
         "sign convention",
         "in the columns 1 to 3",
     ),
+    "the signs of both parts": (
+        (
+            lambda u: np.abs(np.column_stack([normal(u), normal(u[:, 1:])]) + 0.5),
+            lambda x: bell(x[:, 0] - 0.5) * bell(x[:, 1] - 0.5),
+            Product(RealLine(), RealLine()),
+            2,
+        ),
+        "lost sign",
+        "the signs of coordinate 0 and coordinate 1 are lost",
+    ),
+    "the signs of a direction": (
+        (lambda u: np.abs(flight(1, forward)(u)), flight_pdf, FLIGHT, 3),
+        "lost sign",
+        "the signs of x, y and z are lost in the columns 1 to 3",
+    ),
     "a correlation's sign": (
         (
             lambda u: np.column_stack([-normal(u), 0.6 * normal(u) + 0.8 * normal(u[:, 1:])]),

@@ -79,14 +79,102 @@ def skewed(slip, law):
     return sample, lambda x: law[1](x @ right.T)
 
 
-COSINE = lambda u: about(np.sqrt(u[:, 0]), TURN * u[:, 1]), lambda x: np.maximum(x[:, 2], 0) / np.pi
+def ggx(rough, azimuth=lambda u, rough: TURN * u, frame=UPRIGHT):
+    """Return sampler and pdf of half vectors, cosine times D of Trowbridge & Reitz (1975), of two roughnesses in a frame's rows.
+
+    azimuth  of points (n,) and the roughnesses: the angle of the slopes in units of these
+    """
+    a, b = rough
+
+    def sample(u):
+        t, r = azimuth(u[:, 0], rough), np.sqrt(u[:, 1] / (1 - u[:, 1]))
+        x = np.column_stack([a * r * np.cos(t), b * r * np.sin(t), np.ones(len(u))])
+        return x / np.linalg.norm(x, axis=1, keepdims=True) @ frame
+
+    def pdf(x):
+        h = x @ frame.T
+        d = 1 / (np.pi * a * b * ((h[:, 0] / a) ** 2 + (h[:, 1] / b) ** 2 + h[:, 2] ** 2) ** 2)
+        return np.maximum(h[:, 2], 0) * d
+
+    return sample, pdf
+
+
+def ratio(u, rough):
+    """Return the angle of slopes whose azimuth is the arctangent of a ratio, which has no quadrant."""
+    return np.arctan(np.tan(TURN * u))
+
+
+def signless(law, axes):
+    """Return such a law whose samples have lost the signs of some coordinates."""
+
+    def sample(u):
+        x = law[0](u)
+        x[:, axes] = np.abs(x[:, axes])
+        return x
+
+    return sample, law[1]
+
+
+def turned(share):
+    """Return the frame that is turned about z by a share of the turn."""
+    c, s = np.cos(TURN * share), np.sin(TURN * share)
+    return np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
 SPHERE = UnitSphere(), 2
+FLAT = (0.15, 0.5)
+OBLIQUE, _ = built((0.48, 0.64, 0.6), "inverse")
+COSINE = lambda u: about(np.sqrt(u[:, 0]), TURN * u[:, 1]), lambda x: np.maximum(x[:, 2], 0) / np.pi
 CASES = {  # sampler, pdf, domain, dimensions; the cause and words of what explains it
     "half a turn of a hemisphere": (
         (lambda u: about(np.sqrt(u[:, 0]), np.pi * u[:, 1]), lambda x: x[:, 2] / np.pi, UnitHemisphere(), 2),
         "skipped band",
         "azimuth over pi",
     ),
+    "an arctangent for two arguments": (
+        (*ggx(FLAT, ratio), UnitHemisphere(), 2),
+        "skipped band",
+        "arctangent that keeps no quadrant",
+    ),
+    "half a turn of a flat lobe": (
+        (*ggx(FLAT, lambda u, _: np.pi * u), UnitHemisphere(), 2),
+        "skipped band",
+        "azimuth over pi",
+    ),
+    "a quadrant missing": (
+        (*ggx(FLAT, lambda u, _: 1.5 * np.pi * u), *SPHERE),
+        "skipped band",
+        "-90 to 0 degrees, a quarter of the turn",
+    ),
+    "one quadrant": ((*ggx(FLAT, lambda u, _: np.pi / 2 * u), *SPHERE), "skipped band", "stays in its first quadrant"),
+    "half a turn about a normal": (
+        (*ggx(FLAT, lambda u, _: np.pi * u, OBLIQUE), *SPHERE),
+        "skipped band",
+        "about (0.480, 0.640, 0.600)",
+    ),
+    "roughnesses swapped": ((ggx(FLAT[::-1])[0], ggx(FLAT)[1], *SPHERE), "swapped axes", "taken for (y, x, z)"),
+    "roughnesses swapped about a normal": (
+        (ggx(FLAT[::-1], frame=OBLIQUE)[0], ggx(FLAT, frame=OBLIQUE)[1], *SPHERE),
+        "swapped axes",
+        "the two axes across swapped, about (0.480, 0.640, 0.600)",
+    ),
+    "a turned flat lobe": (
+        (ggx(FLAT, frame=turned(0.1) @ OBLIQUE)[0], ggx(FLAT, frame=OBLIQUE)[1], *SPHERE),
+        "rotated frame",
+        "of a turn, about (0.480, 0.640, 0.600)",
+    ),
+    "all signs": ((*signless(hg(0.6, OBLIQUE), [0, 1, 2]), *SPHERE), "lost sign", "the signs of x, y and z are lost"),
+    "all signs of an even law": (
+        (
+            *signless(
+                (lambda u: about(2 * u[:, 0] - 1, TURN * u[:, 1]), lambda x: np.full(len(x), 0.5 / TURN)), [0, 1, 2]
+            ),
+            *SPHERE,
+        ),
+        "lost sign",
+        "the signs of x, y and z are lost",
+    ),
+    "one sign": ((*signless(hg(0.6, OBLIQUE), [0]), *SPHERE), "lost sign", "the sign of x is lost"),
     "a lobe's own parameter": ((fisher(9)[0], fisher(7)[1], *SPHERE), "another parameter", "the pdf's is 7"),
     "the sign of g": ((hg(-0.8)[0], hg(0.8)[1], *SPHERE), "sign convention", "the opposite direction"),
     "area for solid angle": (

@@ -25,6 +25,23 @@ CASES = {  # sampler, pdf, domain, dimensions; the cause and words of what expla
         "about 5",
     ),
     "log2 for ln": ((lambda u: exponential(u) / np.log(2), decay, HalfLine(0), 1), "wrong scale", "binary logarithm"),
+    "a sign": ((lambda u: np.abs(normal(u)), bell, RealLine(), 1), "lost sign", "the sign of x is lost"),
+    "a sign of a law that is not even": (
+        (lambda u: np.abs(normal(u) + 0.5), lambda x: bell(x - 0.5), RealLine(), 1),
+        "lost sign",
+        "the sign of x is lost",
+    ),
+    "a tail that has no end": ((lambda u: normal(0.9 * u), bell, RealLine(), 1), "missing tail", "lies in x > 1.28"),
+    "the tail at the other end": (
+        (lambda u: -normal(0.9 * u), bell, RealLine(), 1),
+        "missing tail",
+        "lies in x < -1.28",
+    ),
+    "a tail of a half line": (
+        (lambda u: exponential(0.9 * u), decay, HalfLine(0), 1),
+        "missing tail",
+        "lies in x > 2.30",
+    ),
     "degrees": ((lambda u: np.degrees(exponential(u)), decay, HalfLine(0), 1), "wrong scale", "degrees"),
     "another shape parameter": (
         (lambda u: weibull_min(2).ppf(u[:, 0]), weibull_min(1.5).pdf, HalfLine(0), 1),

@@ -26,6 +26,17 @@ class Stale:
         return u[:, 0] ** exponent
 
 
+class Alternating:
+    """Another exponent in every so manyth call."""
+
+    def __init__(self, period):
+        self.period, self.calls = period, 0
+
+    def __call__(self, u):
+        self.calls += 1
+        return u[:, 0] ** (1.0 if self.calls % self.period else 1.5)
+
+
 def in_place(u):
     u *= 0.5
     return 2 * u[:, 0]
@@ -49,6 +60,8 @@ def newton(u):
 IMPURE = {
     "hidden generator": (lambda: own_generator(np.random.default_rng(9)), "hidden state"),
     "parameter of the call before": (Stale, "hidden state"),
+    "every second call": (lambda: Alternating(2), "hidden state"),
+    "every fifth call": (lambda: Alternating(5), "hidden state"),
     "seeds itself": (lambda: lambda u: np.random.default_rng(3).random(len(u)), "ignores its uniforms"),
     "works in place": (lambda: in_place, "writes into its uniforms"),
     "one row too late": (lambda: lambda u: np.roll(u[:, 0], 1), "order of the rows"),

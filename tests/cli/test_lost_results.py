@@ -182,6 +182,17 @@ def test_a_record_changed_by_hand_is_named(tmp_path, monkeypatch, words):
     assert (end.code, b"run/results.json" in end.err, b"'schema' stands twice" in end.err) == (2, True, True)
 
 
+def test_an_exit_code_that_is_not_that_of_the_cases_is_named(tmp_path):
+    told = record()
+    assert told["exit_code"] == 1
+    for code, told["exit_code"] in ((0, 1), (2, 0), (2, 3)):
+        (tmp_path / "results.json").write_text(json.dumps(told))
+        assert ends("report", tmp_path).code == code
+    told |= {"state": "interrupted", "exit_code": 130}
+    (tmp_path / "results.json").write_text(json.dumps(told))
+    assert ends("report", tmp_path).code == 0
+
+
 def test_a_record_of_which_no_page_can_be_made_is_named(tmp_path, monkeypatch):
     import fogproof.reports
 

@@ -72,6 +72,13 @@ def test_what_a_killed_process_started_is_ended(stubborn):
     assert gone(pids)
 
 
+def test_who_is_killed_leaves_no_words():
+    """Semaphores that he had are removed, and nobody is told."""
+    code = "import os; from fogproof import servers; lock = servers.context(['os']).Lock(); os.kill(os.getpid(), 9)"
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, timeout=60)  # read until all have ended
+    assert (ended.returncode, ended.stdout, ended.stderr) == (-signal.SIGKILL, b"", b"")
+
+
 def test_what_a_killed_process_started_in_another_is_ended(stubborn):
     words, pids = stubborn
     inner = [sys.executable, "-c", f"from fogproof.children import run; run({words!r})"]

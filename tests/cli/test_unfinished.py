@@ -22,6 +22,7 @@ from fogproof.reports.records.runs import parse_record, write_csv
 from fogproof.reports.records.stability import parse_stability
 from fogproof.stability.record import run_record as stability_record
 from fogproof.study.aggregate import Level
+from fogproof.study.between_replicates import between_replicates
 from fogproof.study.judgement import _against_theory
 from fogproof.zoo.comparison import page as zoo_page
 
@@ -89,8 +90,10 @@ def test_a_study_stopped_after_few_replicates_is_judged(replicates):
     level = Level(
         100, rows, 48, rows[0], np.zeros(0), float("nan"), np.zeros(0), float("nan"), replicates, 0.0, np.empty((0, 4))
     )
-    checks = [finding.check for finding in _against_theory([level], exact, 1e-6, Known(), 0.0)]
-    assert checks == ["variance", "scatter of replicates"][:replicates]
+    between = between_replicates([level], 1e-6)
+    (variance,) = _against_theory([level], exact, 1e-6, Known(), 0.0, between)
+    assert variance.check == "variance"
+    assert (between.calls, between.finding is None) == ("independent", replicates == 1)
 
 
 def test_a_stopped_stability_run_is_unfinished():

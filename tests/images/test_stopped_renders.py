@@ -126,3 +126,11 @@ def test_an_image_of_a_relation_that_was_changed_is_rendered_again():
     assert here(Run(RELATIONS)).code in DONE
     assert rendered() == before + 1
     assert image.read_bytes() == content
+
+
+def test_a_folder_that_is_removed_during_its_render_is_a_sentence():
+    gone = """sh -c 'rm -r out/sun; echo "FileNotFoundError: [Errno 2] no such file" >&2; exit 1' {scene} {out}"""
+    end = here(Run(["render", "sun.toml", "--with", gone, "-o", "out", "--json"]))
+    row = json.loads(end.out)
+    assert (end.code, row["outcome"]) == (3, "error")
+    assert row["reason"] == "the folder out/sun was removed while its scene was rendered"

@@ -253,3 +253,12 @@ def test_what_overflows_while_it_is_read_is_no_warning():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert "internal" not in codes(converse(*requests))
+
+
+def test_only_what_json_takes_for_white_space_is_a_blank_line():
+    out = io.BytesIO()
+    assert serve(io.BytesIO(b" \t\r\n\n").read, out)
+    assert out.getvalue() == b""
+    assert not serve(io.BytesIO(b"\x0b\n \n\x0c").read, out)
+    codes = [json.loads(line)["error"]["code"] for line in out.getvalue().splitlines()]
+    assert codes == ["invalid-input", "invalid-input"]

@@ -402,6 +402,29 @@ def test_a_rejection_is_not_taken_back_by_the_end_of_the_session(tmp_path):
     assert run(tmp_path, textwrap.dedent(RIGHT) + textwrap.dedent(stop)).returncode == 0
 
 
+TAKING_BACK = {
+    "hook": """
+    @pytest.hookimpl(trylast=True)
+    def pytest_sessionfinish(session):
+        session.exitstatus = 0
+    """,
+    "fixture": """
+    @pytest.fixture(autouse=True)
+    def calm(request):
+        yield
+        session = request.session
+        session.testsfailed = 0
+        request.config.add_cleanup(lambda: setattr(session, "exitstatus", 0))
+    """,
+}
+
+
+@pytest.mark.parametrize("way", TAKING_BACK)
+def test_a_rejection_is_not_taken_back_by_an_exit_status(tmp_path, way):
+    (tmp_path / "conftest.py").write_text("import pytest\n" + textwrap.dedent(TAKING_BACK[way]))
+    assert run(tmp_path, WRONG).returncode == 1
+
+
 @pytest.mark.parametrize(("text", "code"), [(RIGHT, 4), (WRONG, 1)], ids=["right", "wrong"])
 def test_a_report_that_cannot_be_written_at_the_end_is_told(tmp_path, text, code):
     full = """

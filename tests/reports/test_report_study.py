@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 from urllib.parse import unquote
 from xml.etree import ElementTree
@@ -212,6 +213,10 @@ def test_errors_of_many_magnitudes_stay_inside_the_figure():
     assert "nan" not in picture.svg
     assert "inf" not in picture.svg
     assert "1e-18" in picture.words
+    assert "Below the picture, where an arrow points: a, down to 1e-18." in picture.words
+    assert "a ↓" in picture.svg
+    higher = replace(curve, error=(1.0, 0.1, 0.01), low=(0.5,) * 3, high=(2.0,) * 3)
+    assert "Below" not in render(Convergence("samples", "error", (higher,), 0.99), "c", (560, 400)).words
 
 
 def test_the_answer_is_told_at_once(tmp_path):

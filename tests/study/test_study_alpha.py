@@ -1,16 +1,12 @@
 """A study spends its false-alarm probability once, over all its cells, and its tests see errors on either side."""
 
-from dataclasses import fields
-
 import numpy as np
 import pytest
 from scipy import stats
 from study_fixtures import LIT, SMALL, drawn, kinds, study_from
 
-from fogproof.study.aggregate import Level
-from fogproof.study.batches import COLUMNS
 from fogproof.study.convergence import Z, order_of, rmse
-from fogproof.study.judgement import _scatter, _scrambled
+from fogproof.study.replicate_means import judged_by_replicates
 
 
 @pytest.mark.parametrize("alpha", [1e-6, 0.01])
@@ -23,36 +19,18 @@ def test_the_findings_of_a_study_share_alpha(tmp_path, alpha):
     assert 0.5 * alpha < spent <= alpha * (1 + 1e-9)
 
 
-def level(means, count):
-    rows = np.zeros((len(means), len(COLUMNS)))
-    rows[:, COLUMNS.index("mean")] = means
-    parts = dict.fromkeys((part.name for part in fields(Level)), np.empty(0))
-    return Level(**{**parts, "count": count, "rows": rows, "replicates": len(means)})
-
-
-def test_the_scatter_of_replicates_is_tested_on_both_sides():
-    rng = np.random.default_rng()
-    p = np.array([_scatter(level(rng.normal(0, 0.1, 24), 100), 1.0, 1e-6).p_value for _ in range(600)])
-    distance = np.max(np.abs(np.sort(p) - (np.arange(600) + 0.5) / 600))
-    assert distance < np.sqrt(np.log(2e9) / 1200)
-    for factor in (0.25, 4.0):
-        found = _scatter(level(factor * rng.normal(0, 0.1, 24), 100), 1.0, 1e-4)
-        assert found.outcome == "rejected", factor
-    means = rng.normal(0, 0.13, 24)
-    statistic = np.sum((means - means.mean()) ** 2) * 100
-    right = 2 * min(stats.chi2.sf(statistic, 23), stats.chi2.cdf(statistic, 23))
-    assert _scatter(level(means, 100), 1.0, 1e-6).p_value == pytest.approx(min(1.0, right), rel=1e-9)
-
-
 def test_means_of_scrambled_points_have_students_law_with_room_for_skewness():
     """Whatever the error of the reference, and if all means are alike: then one hit more or less is no bias."""
     means, alpha = np.random.default_rng().gamma(4.0, size=40), 0.01
     stderr = means.std(ddof=1) / np.sqrt(40)
     growth = abs(stats.skew(means)) / (3 * np.sqrt(40)) * stats.norm.isf(alpha / 2) ** 3
     for z, error in ((1.0, 0.0), (4.0, 0.0), (4.0, 2 * stderr)):
-        found = _scrambled(level(means, 64), means.mean() + z * stderr, error, alpha)
+        found = judged_by_replicates("mean", means, means.mean() + z * stderr, error, alpha)
         right = 2 * stats.t.sf(z - error / stderr, 39) * np.exp(growth)
         assert found.p_value == pytest.approx(min(1.0, right), rel=1e-6)
+    alike = np.full(8, 0.5)
+    assert judged_by_replicates("mean", alike, 0.51, 0.0, alpha, step=1 / 64).outcome == "not rejected"
+    assert judged_by_replicates("mean", alike, 0.52, 0.0, alpha, step=1 / 64).outcome == "rejected"
 
 
 def test_intervals_of_rmse_and_order_are_as_wide_as_they_say():

@@ -1,59 +1,17 @@
 """What is missing, or has no variance, leaves a judgement open; intervals are no wider than what they are to hold."""
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, replace
-from typing import ClassVar
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from study_fixtures import SMALL, study_from
+from study_levels import COUNTS, MEAN, Law, cell, level, normal
 
-from fogproof.contracts import Reference
-from fogproof.study.aggregate import Level
-from fogproof.study.batches import COLUMNS, _largest, draw_batch, moments_of
-from fogproof.study.cells import cells_of
+from fogproof.study.batches import COLUMNS, draw_batch
 from fogproof.study.convergence import Z, order_of
 from fogproof.study.judgement import judge
 from fogproof.study.methods import table as methods
-from fogproof.study.methods.method import Method
 from fogproof.study.plan import batches_of
-
-MEAN = 2.0
-COUNTS = (256, 4096)
-
-
-@dataclass(frozen=True)
-class Law(Method):
-    """MEAN plus what `off` draws: `off(rng, shape)`."""
-
-    off: Callable
-    quantity: ClassVar[str] = "transmittance"
-
-    def make(self, scene, count):
-        return self
-
-    def draw(self, rng, n):
-        return MEAN + self.off(rng, n)
-
-
-def normal(rng, shape):
-    return rng.normal(size=shape)
-
-
-def cell(off=normal):
-    one = cells_of(study_from({**SMALL, "samples": COUNTS}))[0]
-    one = replace(one, index=0, method=Law(off), points="random", _made={})
-    one.__dict__["reference"] = Reference(np.asarray(MEAN), np.asarray(1e-15), "", "")
-    return one
-
-
-def level(x):
-    squares = moments_of(np.square(x - MEAN).reshape(1, -1))[0]
-    tail = _largest(np.abs(x - MEAN).ravel())
-    return Level(
-        x.shape[1], moments_of(x), len(x), squares, tail, math.nan, np.full(2, 1e-3), 1e-6, 1, 1e-3, np.empty((0, 4))
-    )
 
 
 def levels(off):
@@ -76,6 +34,28 @@ def test_a_mean_without_a_variance_is_not_judged_and_says_why():
     assert judged.infinite
     assert judged.outcome == judged.findings[0].outcome == "inconclusive"
     assert "infinite variance suspected" in judged.findings[0].message
+
+
+def test_what_would_not_have_shown_an_error_as_large_as_the_reference_is_not_called_unbiased():
+    rng = np.random.default_rng()
+    few = np.zeros((16, COUNTS[1]))
+    few[[0, 3, 7], 5] = 16 * COUNTS[1] / 3
+    judged = judge(cell(), [level(MEAN * few)], None, 1e-9)
+    assert (judged.outcome, judged.lacks) == ("inconclusive", "resolution")
+    assert "an error as large as the reference itself" in judged.findings[0].message
+    assert judged.times_as_many == (judged.findings[0].resolution.value / MEAN) ** 2 > 10
+    for spread, lacks in ((0.1 * math.sqrt(COUNTS[1]), ""), (100.0, "resolution")):
+        wide = [level(MEAN + spread * MEAN * rng.normal(size=(16, n))) for n in COUNTS]
+        assert judge(cell(), wide, None, 1e-9).lacks == lacks
+
+
+def test_few_values_of_a_normal_law_are_few_and_not_skewed():
+    rng = np.random.default_rng()
+    judged = judge(cell(), [level(MEAN + 0.1 * rng.normal(size=(32, n))) for n in (1, 2)], None, 1e-9)
+    assert (judged.outcome, judged.lacks) == ("inconclusive", "samples")
+    assert judged.times_as_many >= 100 / 96
+    skewed = judge(cell(), [level(rng.exponential(size=(16, n))) for n in (16, 64)], None, 1e-9)
+    assert skewed.lacks == "law"
 
 
 def test_deviations_are_from_the_reference(monkeypatch):

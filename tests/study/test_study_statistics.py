@@ -25,7 +25,7 @@ from fogproof.study.aggregate import Level, merged, pooled
 from fogproof.study.batches import TAIL, TAIL_SHARE, _largest, moments_of
 from fogproof.study.cells import cells_of
 from fogproof.study.convergence import ABOVE, Z, floor_of, order_of, rmse
-from fogproof.study.history import compare
+from fogproof.study.history import _perhaps, compare
 from fogproof.study.methods import table as methods
 from fogproof.study.methods.method import Method
 from fogproof.study.speed import Times, times_of
@@ -406,7 +406,26 @@ def test_nothing_changed_between_a_run_and_itself(record):
     found = compare(record, record)
     assert found["same_draws"]
     assert not found["worse"]
-    assert found["text"].startswith("nothing changed beyond noise")
+    assert found["text"] == "both are one and the same run"
+    again = compare(record, {**record, "started": "later"})
+    assert again["text"].startswith("nothing changed beyond noise")
+
+
+def test_nothing_is_compared_where_nothing_is_in_both_runs(record):
+    other = {**record, "scenes": [{**scene, "name": f"another {scene['name']}"} for scene in record["scenes"]]}
+    assert compare(record, other)["text"] == "no estimator is in both runs: nothing was compared"
+    part = compare(record, {**record, "scenes": record["scenes"][:1]})
+    assert part["text"].startswith("nothing changed beyond noise")
+    assert "; gone: grid / regular, grid / ratio, grid / march" in part["text"]
+
+
+def test_a_change_that_its_interval_shows_and_the_verdict_does_not_is_called_perhaps(record):
+    change = next(c for c in compare(record, record)["changes"] if c["estimator"] == "airlight")
+    assert _perhaps([{**change, "became": [], "time": {"value": 0.6, "low": 0.45, "high": 0.8}}]) == (
+        "; perhaps, and not beyond noise: lit / airlight, 0.6 [0.45, 0.8] of the time"
+    )
+    assert _perhaps([{**change, "became": ["faster"], "time": {"value": 0.6, "low": 0.45, "high": 0.8}}]) == ""
+    assert _perhaps([{**change, "became": [], "time": {"value": 0.9, "low": 0.7, "high": 1.1}}]) == ""
 
 
 def test_draws_are_the_same_whatever_the_checks_say_of_them(record):
@@ -481,7 +500,10 @@ def test_no_lamp_is_too_dim_or_too_bright(intensity, tmp_path):
     }
     record = drawn(study_from({**SMALL, "samples": [16, 512], "scenes": [scene]}), tmp_path)
     json.dumps(record["scenes"][0]["estimators"][0]["moments"], allow_nan=False)
+    assert ("leave binary64" in record["advice"]) == (not 1e-40 < intensity < 1e40)
     for each in record["scenes"][0]["estimators"]:
         far = any(finding["check"] == "range" for finding in each["findings"])
         assert far == (not 1e-40 < intensity < 1e40 and each["kind"] != "marched-airlight")
+        assert not far or f"lit / {each['name'].removesuffix(' + sobol')}" in record["advice"]
+        assert all("choose other units" in f["message"] for f in each["findings"] if f["check"] == "range")
         assert (each["outcome"] == "rejected") == (each["kind"] == "marched-airlight"), each["findings"]

@@ -159,3 +159,12 @@ def test_the_command_prints_rows_and_ends_with_what_it_found(tmp_path):
     assert again.stdout == ""  # nothing is left to do
     with pytest.raises(InvalidInputError, match="no bug is called"):
         select(["feild"])
+
+
+def test_a_run_that_goes_on_has_the_seed_of_its_rows(tmp_path):
+    words = ["zoo", "errata/e2-murky-is-not-normalised", "--samples", "1000", "-o", str(tmp_path)]
+    runs = [CliRunner().invoke(cli, [*words, *more]) for more in ([], [], ["--seed", "7"])]
+    seeds = [run.stderr.rpartition("seed ")[2].strip() for run in runs[:2]]
+    assert seeds[0] == seeds[1] != ""
+    assert isinstance(runs[2].exception, InvalidInputError)
+    assert "of other settings" in str(runs[2].exception)

@@ -92,22 +92,30 @@ def _goals(rows: list[WayTime], unfinished: str) -> str:
     return "Every goal that was judged is met." if unfinished else "Every goal is met."
 
 
-def history(folder: Path) -> list[dict[str, Any]]:
-    """Return the records of earlier runs in a folder, oldest first."""
+def history(folder: Path) -> tuple[list[dict[str, Any]], int]:
+    """Return the records of earlier runs in a folder, oldest first, and how many lines are damaged.
+
+    A file that holds no record at all is somebody else's, and refused.
+    """
     path = folder / "bench.jsonl"
-    if not path.exists():
-        return []
-    records: list[dict[str, Any]] = []
-    for number, line in enumerate(whole_lines(read_text(path, "the history")), start=1):
-        try:
-            record = json.loads(line)
-        except (ValueError, RecursionError):
-            record = None
-        if not isinstance(record, dict) or record.get("schema") != SCHEMA:
-            what = f"{path}, line {number}, is not a record of {SCHEMA}"
-            raise InvalidInputError(f"{what}; choose another folder, or move the file away", str(path))
-        records.append(record)
-    return records
+    lines = whole_lines(read_text(path, "the history")) if path.exists() else []
+    records = [record for line in lines if (record := _record(line)) is not None]
+    if lines and not records:
+        what = f"{path} holds no record of {SCHEMA}"
+        raise InvalidInputError(f"{what}; choose another folder, or move the file away", str(path))
+    return records, len(lines) - len(records)
+
+
+def _record(line: str) -> dict[str, Any] | None:
+    """Return the record that a line holds, None if it is none that could be compared with."""
+    try:
+        record: dict[str, Any] = json.loads(line)
+        numbers = [way[key] for way in record["ways"] for key in ("ratio", "low", "high")]
+        told = [record["started"], *(way[key] for way in record["ways"] for key in ("benchmark", "way"))]
+    except (ValueError, RecursionError, TypeError, KeyError):
+        return None
+    whole = all(isinstance(number, int | float) for number in numbers) and all(isinstance(word, str) for word in told)
+    return record if whole and record.get("schema") == SCHEMA else None
 
 
 def changes(rows: Iterable[WayTime], before: Mapping[str, Any]) -> list[str]:

@@ -11,9 +11,10 @@ import signal
 import sys
 import threading
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any, TypeVar
 
-from fogproof import servers
+from fogproof import parents, servers
 from fogproof.errors import FogproofError, SubjectError, UnsupportedError
 from fogproof.validate import time_limit
 from fogproof_command.startup import StandInError, stand_in
@@ -113,21 +114,25 @@ def _no_process(error: BaseException) -> OSError:
 
 
 def _answer(check: Callable[[], object], pipe: multiprocessing.connection.Connection) -> None:
-    with contextlib.suppress(OSError, AttributeError):  # a signal to our parent's group is not for the subject
-        os.setsid()
+    lock = threading.Lock()
+
+    def send(answer: object) -> None:
+        with lock:
+            try:
+                pipe.send(answer)
+            except OSError:  # our parent is gone, or hears nothing but this number
+                os._exit(_CLOSED)
+
+    parents.stand_between(partial(send, (False, (parents.KILLED, "sample"))))
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # nobody sends it: a KeyboardInterrupt is the subject's own
     parent = multiprocessing.parent_process()
     assert parent is not None
     with contextlib.suppress(RuntimeError):  # where no more threads may be started nothing watches
         threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True).start()
-
-    def send(answer: object) -> None:
-        try:
-            pipe.send(answer)
-        except OSError:  # our parent is gone, or hears nothing but this number
-            os._exit(_CLOSED)
-
     try:
-        send((True, check()))
+        answer = check()
+        parents.confirm()
+        send((True, answer))
     except FogproofError as error:
         send((False, (str(error), error.path)))
     except SystemExit as error:  # the subject's own does not come so far

@@ -27,6 +27,7 @@ _TOLERANCE = {
     "float32": 2.0**-12,
 }  # relative: vectorised code may round, or stop iterating, a little differently
 _LAST = {"float64": 2.0**-46, "float32": 2.0**-20}  # relative: some units in the last place
+_AGAIN = 16  # calls of the same rows, where something differs
 _FEW = 0.01  # of the rows: a rounding may tip a choice
 
 
@@ -71,15 +72,30 @@ def _faults(subject: Subject, u: np.ndarray, draw: Draw) -> Iterator[tuple[str, 
     part = subject.draw_at(first.copy())
     field, share = _differs(rows_of(part, order), subject.draw_at(first[order]), subject.precision)
     if share > _FEW:
+        yield from _unsteady(subject, first)
         yield f"the {field} of a row depends on its place among the others ({share:.0%})", "order of the rows"
     for size, calls in sorted(_CALLS.items(), reverse=True):
         found = [_in_a_call(subject, u, draw, start, size) for start in range(0, min(size * calls, len(u)), size)]
         field, share = found[int(np.argmax([share for _, share in found]))]
         if share > _FEW:
+            yield from _unsteady(subject, u[:size])
             yield (
                 f"in calls of {size} rows {field}, unlike in one of {len(u)} ({share:.0%} of them)",
                 "size of the call",
             )
+
+
+def _unsteady(subject: Subject, u: np.ndarray) -> Iterator[tuple[str, str]]:
+    """Yield that calls of the very same rows differ: state that comes back after some calls hides from a second one."""
+    try:
+        first, *others = (subject.draw_at(u.copy()) for _ in range(_AGAIN))
+    except SubjectError:
+        return
+    for call, other in enumerate(others, 2):
+        field, share = _differs(first, other, subject.precision)
+        if share > _FEW:
+            yield f"call {call} of the same rows gives another {field} ({share:.0%} of the rows)", "hidden state"
+            return
 
 
 def _in_a_call(subject: Subject, u: np.ndarray, draw: Draw, start: int, size: int) -> tuple[str, float]:

@@ -11,7 +11,7 @@ import numpy as np
 from fogproof.contracts import Draw, Reference
 from fogproof.domains import Domain
 from fogproof.domains.law import whole_columns
-from fogproof.errors import FogproofError, SubjectError, shorten
+from fogproof.errors import FogproofError, SubjectError, is_stop, shorten
 
 Precision = Literal["float64", "float32"]
 _BLOCK = 1 << 14  # points of a call, of many
@@ -107,7 +107,14 @@ def call(what: str, function: Callable[..., Any], *arguments: Any) -> Any:
         return function(*arguments)
     except FogproofError:
         raise
-    except (Exception, SystemExit) as error:  # what ends a program must not end whoever checks it
+    except (
+        Exception,
+        SystemExit,
+        GeneratorExit,
+        KeyboardInterrupt,
+    ) as error:  # what ends a program must not end a check
+        if is_stop(error):
+            raise
         raise SubjectError(f"{what} raised {type(error).__name__}: {error}", what) from error
 
 

@@ -52,7 +52,9 @@ def command(names: tuple[str, ...], folder: Path | None, seconds: float, force: 
     earlier: list[dict[str, Any]] = []
     if folder is not None:
         take(folder, ("bench.json", "bench.md"), force)
-        earlier = history(folder)
+        earlier, damaged = history(folder)
+        if damaged:
+            say(f"{damaged} damaged lines of {folder / 'bench.jsonl'} are left out", err=True)
     started, clock = datetime.datetime.now(datetime.UTC), time.perf_counter()
     rows: list[WayTime] = []
     asked = [benchmark.name for benchmark in chosen if not missing(benchmark)]

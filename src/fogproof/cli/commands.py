@@ -12,12 +12,13 @@ import traceback
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any
 
 import click
 
 from fogproof.cli.signals import code_of, stoppable
-from fogproof.cli.terminal import BAD_INPUT, FAULT, UNREAD, code_of_stdout, say, silence, wait_for_streams
+from fogproof.cli.streams import leave_stdout, silence, take_streams
+from fogproof.cli.terminal import BAD_INPUT, FAULT, UNREAD, code_of_stdout, say
 from fogproof.errors import FogproofError, InvalidValueError, stop_behind
 from fogproof.text import one_line
 
@@ -85,18 +86,15 @@ def cli() -> None:
 
 def main(arguments: list[str] | None = None) -> Any:
     """Run the command line. Every end is a sentence and a code; 1 means that something was rejected, and nothing else."""
-    if sys.stdout is None:
-        sys.stdout = _unread()
-    if sys.stderr is None:
-        sys.stderr = _nowhere()
-    wait_for_streams()
-    _write_whole()
+    ours = arguments is None
+    take_streams(ours)
     warnings.showwarning = _warn
     with stoppable() as listening:
         try:
             code = _run(arguments)
         except KeyboardInterrupt as stop:  # while the end was told
             code = code_of(stop)
+        leave_stdout(ours)
         sys.exit(listening.code or code)  # a signal may have waited until everything was written
 
 
@@ -129,7 +127,7 @@ def _run(arguments: list[str] | None) -> int:
         code = _say("the system allows no more threads; end some, or raise its limit (ulimit -u)", BAD_INPUT)
     except MemoryError:
         code = _say("there is not enough memory for this; ask for less at a time", BAD_INPUT)
-    except (Exception, SystemExit) as error:  # nothing of ours asks for the end: a module that is loaded does
+    except BaseException as error:  # nothing of ours asks for the end: a module that is loaded does
         code = _fault(error)
     return code
 
@@ -199,29 +197,3 @@ def _seen_as_unread() -> Iterator[None]:
     except BrokenPipeError:
         silence(sys.stdout)
         raise click.exceptions.Exit(UNREAD) from None
-
-
-def _write_whole() -> None:
-    """Let stdout write all it is given: where PYTHONUNBUFFERED is set, Python takes a part of it for the whole, without a word."""
-    out = sys.stdout
-    raw = getattr(out, "buffer", None)
-    own = out is sys.__stdout__  # not what a caller has put in its place
-    if own and isinstance(out, io.TextIOWrapper) and isinstance(raw, io.RawIOBase):
-        whole = io.BufferedWriter(raw)
-        sys.stdout = io.TextIOWrapper(whole, out.encoding, out.errors, line_buffering=True, write_through=True)
-
-
-def _nowhere() -> TextIO:
-    """Return what stands for a stderr that was closed before the start; no file that is opened later takes its number."""
-    opened = os.open(os.devnull, os.O_WRONLY)
-    if opened != 2:  # stdin is closed, too
-        os.dup2(opened, 2)
-        os.close(opened)
-    return open(2, "w", encoding="utf-8", closefd=False)
-
-
-def _unread() -> TextIO:
-    """Return what stands for a stdout that was closed before the start: a pipe that nobody reads."""
-    reading, writing = os.pipe()
-    os.close(reading)
-    return open(writing, "w", encoding="utf-8")

@@ -20,6 +20,7 @@ from fogproof.golden import Entry, golden_entries, to_c, to_csv, to_json_documen
 from fogproof.input_files import read_requests
 from fogproof.oracle.limits import Limits
 from fogproof.oracle.requests import read_request
+from fogproof.oracle.service import BLANKS
 from fogproof.reports.files import write_output
 
 FORMATS: dict[str, Callable[..., str | bytes]] = {"json": to_json_document, "csv": to_csv, "c": to_c, "npz": to_npz}
@@ -95,7 +96,7 @@ def _request(line: bytes) -> dict[str, Any] | None:
         text = line.decode("utf-8-sig")
     except UnicodeDecodeError:
         raise InvalidInputError("it is not UTF-8 text") from None
-    if not text.strip():
+    if not text.strip(BLANKS.decode()):
         return None
     request = read_request(text)
     if not isinstance(request, dict):

@@ -17,6 +17,7 @@ from fogproof.cli.values import FILE, NAMED
 from fogproof.errors import InvalidInputError
 from fogproof.input_files import read_requests
 from fogproof.oracle import Limits, schema, serve
+from fogproof.oracle.service import BLANKS
 from fogproof.quantities import quantities
 
 
@@ -102,7 +103,7 @@ def _stdin() -> Callable[[int], bytes]:
 def _file(path: str) -> Callable[[int], bytes]:
     """Return how to read a file: as it is if it holds lines of JSON, as one line if it holds one object on several."""
     content = read_requests(path)
-    if not content.strip():
+    if not content.strip(BLANKS):
         raise InvalidInputError(f"{path} holds no request: write a JSON object, or one a line", path)
     if _is_json(content) or not any(map(_is_json, content.split(b"\n"))):
         content = content.replace(b"\n", b" ")

@@ -16,21 +16,13 @@ from dataclasses import dataclass
 from types import FrameType
 from typing import Any
 
-from fogproof.errors import stop_behind
+from fogproof.errors import Stopped, stop_behind
 
 _ASKING = ("SIGINT", "SIGTERM", "SIGHUP", "SIGXCPU")
 _REPEATED = getattr(signal, "SIGXCPU", 0)
 """The signal that the system sends again every second, and nobody means more by it."""
 PATIENCE = 1.0
 """Seconds after the first signal during which others are taken for the same; a later one ends the process at once."""
-
-
-class Stopped(KeyboardInterrupt):
-    """A signal has asked the run to stop; `code` is what a shell expects of such a process: 128 + the signal's number."""
-
-    def __init__(self, number: int) -> None:
-        super().__init__(signal.Signals(number).name)
-        self.code = 128 + number
 
 
 def code_of(stop: BaseException) -> int:
@@ -55,6 +47,8 @@ class Listening:
         elif number != _REPEATED and time.monotonic() - self.at > PATIENCE:
             signal.signal(number, signal.SIG_DFL)
             os.kill(os.getpid(), number)
+
+    hear.raises_stopped = True  # type: ignore[attr-defined]  # what `is_stop` asks of a handler
 
     @property
     def code(self) -> int:

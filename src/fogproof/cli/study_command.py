@@ -99,7 +99,9 @@ def command(
     page = write_report(read_record(folder), folder, keep=True)
     say(f"\npage: {page}; seed {record['seed']}", err=True)
     history = record["history"]
-    return 1 if history and history["worse"] else record["exit_code"]
+    if history and history["worse"]:
+        return 1
+    return record["exit_code"] or (3 if history and history["gone"] else 0)
 
 
 def _print_rows(record: dict[str, Any]) -> None:
@@ -146,6 +148,8 @@ def _cells(estimator: dict[str, Any], targets: int) -> list[str]:
     checks = [finding["check"] for finding in estimator["findings"] if finding["outcome"] == "rejected"]
     if estimator["status"] == "rejected" and not {"mean", "value", "random points"} & set(checks):
         unbiased = f"WRONG {checks[0]}"
+    if estimator["unbiased_to"]:
+        unbiased += f", to {100 * estimator['unbiased_to']:.0f} %"
     bias = f"{estimator['bias']['value']:+.1e}" if estimator["bias"] else ""
     times = [_time(target) for target in speed["targets"]] if speed else []
     relative = _relative(speed["relative"]) if speed and speed["relative"] else ""

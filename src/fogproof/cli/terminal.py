@@ -8,10 +8,11 @@ import os
 import sys
 import time
 from collections.abc import Iterator
-from typing import BinaryIO, TextIO
+from typing import BinaryIO
 
 import click
 
+from fogproof.cli.streams import silence
 from fogproof.doing import heard_by
 from fogproof.errors import InvalidInputError
 from fogproof.text import one_line, visible
@@ -33,8 +34,8 @@ _SHOWN = 0.2  # seconds that a line stands at least
 def say(text: object = "", err: bool = False) -> None:
     """Print text with its control characters, bidirectional overrides and lone surrogates made visible; new lines stay.
 
-    A stdout that takes no more ends a command, but not one that has a folder to write into: that goes on, and `code_of_stdout`
-    tells how it must end. A stderr that takes no more ends nothing.
+    A stream that takes no more ends nothing, so that no verdict is lost with a row: the command goes on to its end, and
+    `code_of_stdout` tells what stands in the place of 0.
     """
     try:
         click.echo(visible(str(text)), err=err)
@@ -43,7 +44,7 @@ def say(text: object = "", err: bool = False) -> None:
             silence(sys.stderr)
             return
         context = click.get_current_context(silent=True)
-        if context is None or context.params.get("folder") is None:
+        if context is None:
             raise
         silence(sys.stdout)
         unread = isinstance(error, BrokenPipeError)
@@ -89,19 +90,6 @@ def _draw(line: str) -> None:
 def code_of_stdout(context: click.Context) -> int:
     """Return the exit code for a stdout that took no more while the command went on, 0 if all was well."""
     return int(context.meta.get(_CODE, 0))
-
-
-def silence(stream: TextIO) -> None:
-    """Let what a stream still holds go nowhere, and all that follows: Python would try again at its end, and complain."""
-    with contextlib.suppress(OSError, ValueError, AttributeError):
-        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
-
-
-def wait_for_streams() -> None:
-    """Let reading and writing wait where a parent left its pipes non-blocking: Python would lose what is under way."""
-    for number in range(3):
-        with contextlib.suppress(OSError, AttributeError):  # one that is closed
-            os.set_blocking(number, True)
 
 
 def requests_on_stdin() -> BinaryIO:

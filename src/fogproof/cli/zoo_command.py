@@ -6,6 +6,7 @@ import json
 from collections import Counter
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -33,7 +34,9 @@ from fogproof.cli.values import FOLDER, PROBABILITY
     "--alpha", type=PROBABILITY, default=1e-6, show_default=True, help="False-alarm probability of one check."
 )
 @click.option(
-    "--seed", type=click.IntRange(min=0), help="Seed of the run; a fresh one is drawn and printed by default."
+    "--seed",
+    type=click.IntRange(min=0),
+    help="Seed of the run; by default that of the rows in DIR, or a fresh one, which is printed.",
 )
 @click.option("--workers", type=click.IntRange(min=1), default=2, show_default=True, help="Threads.")
 @click.option("--others", is_flag=True, help="Put other tests of the field to the same subjects.")
@@ -77,8 +80,12 @@ def command(
     chosen = select(bugs, one_in)
     log, rows = None, []
     if folder is not None:
-        settings = {"samples": samples, "alpha": alpha, "others": others}
-        log = ZooLog(folder / "zoo.jsonl", settings)
+        settings: dict[str, Any] = {"samples": samples, "alpha": alpha, "others": others}
+        path = folder / "zoo.jsonl"
+        if seed is None:
+            seed = ZooLog(path, settings).seed()
+        seed = fresh_seed() if seed is None else seed
+        log = ZooLog(path, settings | {"seed": seed})
         names = {bug.name for bug in chosen}
         found, damaged = log.read()
         rows = [row for row in found if row.name in names]

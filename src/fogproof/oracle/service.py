@@ -17,6 +17,8 @@ AT_ONCE = 512
 CHUNK = 1 << 18
 """Bytes read at a time, at most: a program that writes one line and waits is answered at once."""
 
+BLANKS = b" \t\r\n"
+"""What JSON takes for white space: a line of anything else is a request, if a bad one."""
 PATIENCE = 0.05
 """Seconds that an answer may wait for others to leave with."""
 
@@ -75,7 +77,7 @@ def _lines(read: Callable[[int], bytes], longest: int) -> Iterator[list[bytes | 
             kept.append(part)
             size += len(part)
             line = b"".join(kept) if size <= longest else None
-            if line is None or line.strip():
+            if line is None or line.strip(BLANKS):
                 found.append(line)
             kept, size = [], 0
         if not lost:

@@ -42,6 +42,8 @@ def render_one(
         return RenderFailure(f"rendering took longer than {seconds:g} s")
     except OSError as error:
         return RenderFailure(f"cannot run {command[0]}: {error.strerror or error}")
+    if not out.parent.is_dir():
+        return RenderFailure(f"the folder {out.parent} was removed while its scene was rendered")
     if ran.returncode:
         words = (ran.stderr.strip().splitlines() or [""])[-1][-LAST:]
         if "No module named" in words and renderer.install:

@@ -15,6 +15,7 @@ from fogproof.study.cells import Cell
 from fogproof.study.convergence import Estimate, Floor
 from fogproof.study.judgement import Judged
 from fogproof.study.reaching import TARGETS, ErrorOverTime, Reach, reach_of, variance_law
+from fogproof.study.replicate_means import student_quantile
 from fogproof.study.scatter import degrees_of_freedom, spread
 from fogproof.study.speed import Times
 
@@ -41,6 +42,7 @@ def error_curve(
         cell.method.axis == "samples"
         and cell.points == "random"
         and judged.outcome != "rejected"
+        and judged.calls in ("independent", "doubtful")
         and not judged.doubted
         and not cell.method.bias
         and not judged.infinite
@@ -54,7 +56,7 @@ def error_curve(
 
 
 def stays_for_good(
-    judged: Judged, bias: Estimate | None, floor: Floor | None, levels: Sequence[Level], data: Moments
+    cell: Cell, judged: Judged, bias: Estimate | None, floor: Floor | None, levels: Sequence[Level], data: Moments
 ) -> float:
     """Return the error that is there for good: a march's floor where it has met it, or the least bias a rejected one can have.
 
@@ -62,9 +64,28 @@ def stays_for_good(
     """
     if floor is not None:
         return floor.error if floor.reached else 0.0
-    if judged.outcome != "rejected" or bias is None or not bias.low * bias.high > 0 or not _alike(levels, data):
+    if judged.outcome != "rejected" or bias is None or not bias.low * bias.high > 0:
+        return 0.0
+    apart = cell.points == "sobol" or judged.calls != "independent"
+    if not (_intervals_meet(levels) if apart else _alike(levels, data)):
         return 0.0
     return min(abs(bias.low), abs(bias.high))
+
+
+def _intervals_meet(levels: Sequence[Level]) -> bool:
+    """Return whether the means of replicates at all counts, with Student's intervals, may be one and the same."""
+    lows, highs = [], []
+    for level in levels:
+        means, n = level.rows[:, 1], len(level.rows)
+        reach = (
+            student_quantile(n - 1, _NO_LAW / len(levels)) * float(means.std(ddof=1)) / math.sqrt(n)
+            if n > 1
+            else math.inf
+        )
+        reach += 1e-12 * abs(float(means.mean()))
+        lows.append(float(means.mean()) - reach)
+        highs.append(float(means.mean()) + reach)
+    return max(lows) <= min(highs)
 
 
 def _alike(levels: Sequence[Level], data: Moments) -> bool:

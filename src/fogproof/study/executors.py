@@ -19,7 +19,7 @@ from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from typing import Any
 
-from fogproof import servers
+from fogproof import parents, servers
 from fogproof.errors import InvalidValueError, NotInstalledError, SubjectError
 
 PATIENCE = 10.0
@@ -84,9 +84,8 @@ def _as_worker() -> None:
 
     A worker that outlives it would wait for work for ever, and keep open what its parent's output is read from.
     """
+    parents.stand_between(lambda: None)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    with contextlib.suppress(OSError):
-        os.dup2(2, 1)  # what an estimator prints is no part of the study's answer
     multiprocessing.util.Finalize(None, _end_at_once, exitpriority=1000)  # before anybody is waited for
     parent = multiprocessing.parent_process()
     assert parent is not None

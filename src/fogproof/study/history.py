@@ -26,8 +26,15 @@ def compare(before: dict[str, Any], after: dict[str, Any], alpha: float = 1e-6) 
     changes = [_change(*pair, speed, share) for pair, speed in zip(pairs, speeds.changes, strict=True)]
     found = {word: [_title(c) for c in changes if word in c["became"]] for word in _WORDS}
     said = [f"{word}: {', '.join(names)}" for word, names in found.items() if names]
-    text = "; ".join(said) if said else "nothing changed beyond noise"
-    text += _of_speeds(speeds, changes)
+    same = _one_run(before, after)
+    if same:
+        text = "both are one and the same run"
+    elif not pairs:
+        text = "no estimator is in both runs: nothing was compared"
+    else:
+        text = "; ".join(said) if said else "nothing changed beyond noise"
+        text += _perhaps(changes) + _of_speeds(speeds, changes)
+    text += f"; gone: {_some(gone)}" if gone and pairs else ""
     return {
         "before": {
             key: before[key] for key in ("title", "started", "fogproof", "fingerprint", "digest", "environment")
@@ -45,6 +52,7 @@ def compare(before: dict[str, Any], after: dict[str, Any], alpha: float = 1e-6) 
     }
 
 
+_SHOWN = 3
 _HARDLY = 10.0
 """A change of speed that must be larger than this to be seen is hardly told."""
 _WORDS = ("biased", "different", "noisier", "less noisy", "slower", "faster")
@@ -65,6 +73,26 @@ def _machines(record: dict[str, Any]) -> set[str]:
     """Return the machines and versions, fogproof's own code aside, that a study was drawn with."""
     drawn = [session["environment"] for session in record.get("sessions", ())] or [record["environment"]]
     return {json.dumps({k: v for k, v in table.items() if k != "code"}, sort_keys=True) for table in drawn}
+
+
+def _one_run(before: dict[str, Any], after: dict[str, Any]) -> bool:
+    one, other = ({key: told for key, told in record.items() if key != "history"} for record in (before, after))
+    return one == other
+
+
+def _perhaps(changes: Sequence[dict[str, Any]]) -> str:
+    """Name those whose interval does not hold "no change", though so much is not beyond noise."""
+    found = [
+        f"{_title(c)}, {t['value']:.2g} [{t['low']:.2g}, {t['high']:.2g}] of the time"
+        for c in changes
+        if (t := c["time"]) and not t["low"] <= 1 <= t["high"] and not {"slower", "faster"} & set(c["became"])
+    ]
+    return f"; perhaps, and not beyond noise: {_some(found)}" if found else ""
+
+
+def _some(names: Sequence[str]) -> str:
+    more = len(names) - _SHOWN
+    return ", ".join(names if more <= 1 else [*names[:_SHOWN], f"and {more} more"])
 
 
 def _of_speeds(speeds: Speeds, changes: Sequence[dict[str, Any]]) -> str:
@@ -99,10 +127,15 @@ def _biased(old: dict[str, Any], young: dict[str, Any], alpha: float) -> list[st
         offs = [e["bias"]["value"] if e["bias"] else 0.0 for e in (old, young)]
         worse = abs(offs[1]) > 2 * abs(offs[0]) and young["outcome"] == "rejected"
         return ["biased"] if worse else []
-    if young["points"] == "sobol" or old["moments"] == young["moments"]:
+    if young["points"] == "sobol" or old["moments"] == young["moments"] or not _independent(old, young):
         return []
     finding = difference_test("difference", _moments(old), _moments(young), alpha)
     return ["different"] if finding.outcome == "rejected" else []
+
+
+def _independent(*runs: dict[str, Any]) -> bool:
+    """Return whether realisations are independent of each other as far as was seen: else their moments say nothing of a mean."""
+    return all(run.get("calls", "independent") == "independent" for run in runs)
 
 
 def _ratio(old: dict[str, Any], young: dict[str, Any]) -> dict[str, float] | None:

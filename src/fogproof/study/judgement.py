@@ -5,28 +5,31 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
 from fogproof.checks import Finding
 from fogproof.checks.statistics.heavy import TailEstimate
 from fogproof.checks.statistics.known import NOTHING, Known
-from fogproof.checks.statistics.means import mean_test, short_of_variance
+from fogproof.checks.statistics.means import LEAST, mean_test
 from fogproof.checks.statistics.moments import ORDINARY, Moments
-from fogproof.checks.statistics.tails import gamma_above, normal_quantile, student_two_sided
+from fogproof.checks.statistics.tails import normal_quantile
 from fogproof.checks.statistics.two_values import two_valued
 from fogproof.checks.verdict import Outcome
 from fogproof.contracts import Reference
 from fogproof.study.aggregate import Level, pooled
+from fogproof.study.between_replicates import BetweenReplicates, Calls, between_replicates
 from fogproof.study.cells import Cell
+from fogproof.study.question import UNITS
+from fogproof.study.replicate_means import as_calls_allow, judged_by_replicates
 
+Lack = Literal["", "samples", "law", "resolution", "calls", "range"]
 EPS = float(np.finfo(float).eps)
 ROUNDING = 1e-12
 """Relative difference to the reference that sums in another order may make."""
 BY_BIAS = frozenset({"mean", "value", "random points"})
 """The checks that a bias fails."""
-_NEARLY_NORMAL = 0.01
-"""Excess kurtosis of a replicate's mean below which the scatter of replicates is tested by chi-square's law."""
 _SUSPICIOUS = 0.05
 """Share of one realisation in the sum of squares that is worth a warning, where it is twice that of a normal law's largest."""
 
@@ -38,12 +41,18 @@ class Judged:
     outcome  that of all findings, but for a variance that could not be tested: squares are more skewed than what is squared
     warning  about heavy tails, "" if there is none
     times_as_many  how many times as many realisations would decide about the mean, as far as can be foreseen; 1 if nothing is open
+    calls    how the realisations of a call go together
+    lacks    what an open judgement lacks: "samples", too few of whatever law; "law": samples for so skewed values; "resolution": an
+             error as large as the reference would not have been seen; "calls": calls, to tell whether their realisations are
+             independent; "range": numbers that binary64 has powers of; "" else
     """
 
     outcome: Outcome
     findings: tuple[Finding, ...]
     warning: str
     times_as_many: float = 1.0
+    calls: Calls = "independent"
+    lacks: Lack = ""
 
     @property
     def wrong(self) -> frozenset[str]:
@@ -85,6 +94,8 @@ def judge(cell: Cell, levels: Sequence[Level], variance: Reference | None, alpha
     bad = sum(level.bad for level in levels)
     findings: list[Finding] = []
     warning, times_as_many = "", 1.0
+    calls: Calls = "independent"
+    lacks: Lack = ""
     if bad:
         findings.append(
             Finding("finite values", "rejected", f"{bad} realisations are not finite", cause="not a number")
@@ -92,30 +103,40 @@ def judge(cell: Cell, levels: Sequence[Level], variance: Reference | None, alpha
     elif not any(len(level.rows) for level in levels):
         findings.append(Finding("mean", "inconclusive", "nothing has been drawn"))
     elif out_of_range(cell, levels):
-        rule = f"differ by less than {1 / ORDINARY:.1g}, or reach {ORDINARY:.1g}: their powers leave binary64; choose other units"
-        findings.append(Finding("range", "inconclusive", f"realisations about {value:.3g} {rule}"))
+        findings.append(_out_of_range(cell, value))
+        lacks = "range"
     elif cell.method.axis != "samples":
         findings.append(_exact(cell, levels, value, error))
     elif cell.points == "sobol":
-        findings.append(_scrambled(levels[-1], value, resolution_of(value, error), alpha))
+        findings.append(_by_replicates(levels[-1], value, error, alpha))
     else:
         data = pooled(np.concatenate([level.rows for level in levels]))
         known = _known(cell, variance, data.low == data.high)
-        findings.append(mean_test("mean", "mean", data, value, error, alpha, known=known))
+        between = between_replicates(levels, alpha)
+        mean = mean_test("mean", "mean", data, value, error, alpha, known=known)
+        mean = as_calls_allow(mean, between, _by_replicates(levels[-1], value, error, alpha))
+        coarse = _coarse(mean, value)
+        findings.append(coarse or mean)
         if data.low < known.low or data.high > known.high:
             told = f"realisations reach from {data.low:.6g} to {data.high:.6g}, declared are {known.low:g} to {known.high:g}"
             findings.append(Finding("bounds", "rejected", told, cause="contract"))
-        findings += _against_theory(levels, variance, alpha, known, value)
+        findings += _against_theory(levels, variance, alpha, known, value, between)
+        findings += [between.finding] if between.finding else []
+        calls = between.calls
         warning = _heavy(levels, data, value)
         if warning and variance is None and "infinite" in warning:
             findings[0] = replace(findings[0], outcome="inconclusive", message=f"{findings[0].message}; {warning}")
-        elif findings[0].outcome == "inconclusive":
-            times_as_many = _wanted(data, alpha)
+        elif coarse:
+            lacks, times_as_many = "resolution", _finer(mean, value)
+        elif calls == "doubtful" and "inconclusive" in (mean.outcome, findings[-1].outcome):
+            lacks, times_as_many = "calls", 4.0
+        elif mean.outcome == "inconclusive":
+            lacks, times_as_many = "samples" if data.n < LEAST else "law", _wanted(data, alpha)
     if not all(level.complete for level in levels) or len(levels) < len(cell.counts):
         findings.append(Finding("completeness", "inconclusive", "batches are missing"))
     outcomes = [f.outcome for f in findings if f.outcome == "rejected" or f.check != "variance"]
     outcome: Outcome = next((o for o in ("rejected", "inconclusive") if o in outcomes), "not rejected")
-    return Judged(outcome, tuple(findings), warning, times_as_many)
+    return Judged(outcome, tuple(findings), warning, times_as_many, calls, lacks)
 
 
 def _known(cell: Cell, variance: Reference | None, alike: bool) -> Known:
@@ -134,30 +155,27 @@ def _known(cell: Cell, variance: Reference | None, alike: bool) -> Known:
 def _wanted(data: Moments, alpha: float) -> float:
     """Return how many times as many realisations make the correction for skewness small enough; it falls with their root."""
     exponent = abs(data.skewness) / (3 * math.sqrt(max(data.n, 1))) * normal_quantile(alpha / 2) ** 3
-    return max(4.0, exponent**2)
+    return max(LEAST / data.n, exponent**2) if data.n < LEAST else max(4.0, exponent**2)
 
 
-def _scrambled(level: Level, value: float, error: float, alpha: float) -> Finding:
-    """Judge the means of scrambled replicates: few, and far from normal where the points fit the function.
+def _coarse(mean: Finding, value: float) -> Finding | None:
+    """Return a mean that was not rejected as an open one where an error as large as the reference would not have been seen."""
+    if mean.outcome != "not rejected" or mean.resolution is None or not 0 < abs(value) < mean.resolution.value:
+        return None
+    message = f"{mean.message}; an error as large as the reference itself would not have been seen"
+    return replace(mean, outcome="inconclusive", message=message, p_value=None)
 
-    With random points the same function of uniforms is judged by many more independent values, and `inherited` counts that in; here
-    only what skewness cannot explain is rejected: Student's p-value grows by its correction at alpha. Means that are all alike say
-    nothing finer than one realisation more or less: of hits and misses a net can have the same number under every scrambling.
-    """
-    data = Moments.of(level.rows[:, 1])
-    data.values = None  # no hits and misses
-    off = data.mean - value
-    if data.m2 > 0:
-        z = max(abs(off) - error, 0.0) / data.stderr
-        growth = abs(data.skewness) / (3 * math.sqrt(data.n)) * normal_quantile(alpha / 2) ** 3
-        p = min(1.0, student_two_sided(data.n - 1, z) * math.exp(min(growth, 700.0)))
-    else:
-        width = float(np.ptp(level.rows[:, 5:7]))
-        # Where no point differs from another, rare values may be missing: random points, which are more, are asked about those.
-        p = 1.0 if width == 0 or abs(off) <= error + width / level.count else 0.0
-    outcome: Outcome = "rejected" if p <= alpha else "not rejected"
-    message = f"mean of scrambled replicates {data.mean:.9g} +- {data.stderr:.2g}, reference {value:.9g}"
-    return Finding("mean", outcome, message, p, alpha, effect=off, cause="bias" if p <= alpha else "")
+
+def _finer(mean: Finding, value: float) -> float:
+    """Return how many times as many realisations see an error as large as the reference: resolutions fall with their root."""
+    assert mean.resolution is not None
+    return max(2.0, (mean.resolution.value / abs(value)) ** 2)
+
+
+def _out_of_range(cell: Cell, value: float) -> Finding:
+    rule = f"differ by less than {1 / ORDINARY:.1g}, or reach {ORDINARY:.1g}: their powers leave binary64"
+    units = "; choose other units" if UNITS[cell.scene.quantity] != "1" else ""
+    return Finding("range", "inconclusive", f"realisations about {value:.3g} {rule}{units}")
 
 
 def inherited(judged: Judged, twin: Judged) -> Judged:
@@ -165,7 +183,7 @@ def inherited(judged: Judged, twin: Judged) -> Judged:
     if twin.outcome == "not rejected" or judged.outcome == "rejected":
         return judged
     finding = Finding("random points", twin.outcome, f"with random points the estimator is {twin.outcome}")
-    return Judged(twin.outcome, (*judged.findings, finding), judged.warning, twin.times_as_many)
+    return replace(judged, outcome=twin.outcome, findings=(*judged.findings, finding), times_as_many=twin.times_as_many)
 
 
 def doubted(judged: Judged, twin: Judged) -> Judged:
@@ -204,9 +222,14 @@ def _of_squares(known: Known, value: float) -> Known:
 
 
 def _against_theory(
-    levels: Sequence[Level], variance: Reference | None, alpha: float, known: Known, value: float
+    levels: Sequence[Level],
+    variance: Reference | None,
+    alpha: float,
+    known: Known,
+    value: float,
+    between: BetweenReplicates,
 ) -> list[Finding]:
-    """Return what the exact variance says of the spread of realisations, and of that of whole replicates."""
+    """Return what the exact variance says of the spread of realisations."""
     if variance is None or not np.isfinite(variance.value):
         return []
     squares = pooled(np.stack([level.squares for level in levels]))
@@ -216,28 +239,19 @@ def _against_theory(
     if "too small" in found.region and two_valued(squares) and not found.distribution_free and not known.bounded:
         message = f"{found.message.partition(';')[0]}; rare values that were not seen may hold the rest"
         found = replace(found, outcome="inconclusive", message=message, p_value=None, cause="", region=())
-    findings = [found]
-    last, data = levels[-1], pooled(levels[-1].rows)
-    met = not short_of_variance(data, Known(variance=exact + error))  # else rare values that were not met would scatter
-    if met and exact > 0 and len(last.rows) > 1 and data.m2 > 0 and excess(data) / last.count < _NEARLY_NORMAL:
-        findings.append(_scatter(last, exact, alpha))
-    return findings
+    rows, count = levels[-1].rows, levels[-1].count
+    means = rows[:, 2] / count + (rows[:, 1] - value) ** 2
+    own = judged_by_replicates(what, means, exact, error, alpha, cause="wrong variance", name="variance")
+    return [as_calls_allow(found, between, own)]
 
 
-def _scatter(level: Level, variance: float, alpha: float) -> Finding:
-    """Test that the means of replicates scatter about their own mean as independent ones do."""
-    means, freedom = level.rows[:, 1], len(level.rows) - 1
-    statistic = float(np.sum(np.square(means - means.mean()))) * level.count / variance
-    above = gamma_above(0.5 * freedom, 0.5 * statistic)
-    p = min(1.0, 2 * min(above, 1 - above))
-    ratio = math.sqrt(statistic / freedom)
-    message = f"means of {level.count} realisations scatter {ratio:.3f} times as predicted"
-    wrong = p <= alpha
-    cause = "dependence" if wrong else ""
-    return Finding(
-        "scatter of replicates", "rejected" if wrong else "not rejected", message, p, alpha, False, ratio, ratio - 1,
-        cause=cause,
-    )  # fmt: skip
+def _by_replicates(level: Level, value: float, error: float, alpha: float) -> Finding:
+    """Judge the mean by that of whole replicates at the largest count.
+
+    With random points the same function of uniforms is judged by many more independent values, and `inherited` counts that in.
+    """
+    step = float(np.ptp(level.rows[:, 5:7])) / level.count
+    return judged_by_replicates("mean", level.rows[:, 1], value, resolution_of(value, error), alpha, step=step)
 
 
 def excess(data: Moments) -> float:

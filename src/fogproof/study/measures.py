@@ -12,16 +12,20 @@ import numpy as np
 from fogproof.checks.statistics.moments import Moments
 from fogproof.contracts import Reference
 from fogproof.study.aggregate import Level, pooled
+from fogproof.study.between_replicates import Calls
 from fogproof.study.cells import Cell
-from fogproof.study.convergence import Estimate, Floor, Order, Z, floor_of, order_of, rmse
+from fogproof.study.convergence import CONFIDENCE, Estimate, Floor, Order, Z, floor_of, order_of, rmse
 from fogproof.study.error_curve import error_curve, reaches_of, stays_for_good
 from fogproof.study.fixed_work import summed_up
 from fogproof.study.judgement import BY_BIAS, Judged, doubted, inherited, judge, out_of_range, resolution_of
 from fogproof.study.methods.table import kind_of, options_of
 from fogproof.study.reaching import Reach
+from fogproof.study.replicate_means import student_quantile
 from fogproof.study.scatter import degrees_of_freedom, kurtosis, spread
 from fogproof.study.speed import Times, times_of
 
+_COARSE = 0.1
+"""Of the reference: what would not show a smaller bias is called unbiased to so much alone."""
 _LEVEL = 0.2
 """An error of which so much stays for good is on its way to a level, not down a power of the count."""
 
@@ -71,10 +75,11 @@ def measure(
     levels = [] if out_of_range(cell, levels) else levels  # what cannot be summed cannot be measured
     value, error = float(cell.reference.value), float(cell.reference.error)
     data = pooled(np.concatenate([level.rows for level in levels])) if levels else Moments()
-    errors, times = [_rmse(cell, level, data, error) for level in levels], times_of(levels)
-    order, floor = _fall(cell, levels, errors, data, value, error)
-    bias = _bias(cell, levels, data, error)
-    stays = stays_for_good(judged, bias, floor, levels, data)
+    calls = judged.calls
+    errors, times = [_rmse(cell, level, data, error, calls) for level in levels], times_of(levels)
+    order, floor = _fall(cell, levels, errors, data, value, error, calls)
+    bias = _bias(cell, levels, data, error, calls)
+    stays = stays_for_good(cell, judged, bias, floor, levels, data)
     if order is not None and floor is None and stays > _LEVEL * errors[-1].value:
         order = None  # it falls to its bias, and no further
     curve = error_curve(cell, levels, errors, times, data, variance, judged, stays)
@@ -92,10 +97,11 @@ def measure(
         "outcome": judged.outcome,
         "warning": judged.warning,
         "times_as_many": judged.times_as_many,
+        "calls": calls,
         "findings": judged.findings,
         "moments": _moments(data),
         "bias": None if bias is None else asdict(bias),
-        "variance": _variance(cell, data, variance),
+        "variance": _variance(cell, data, variance, calls),
         "order": None if order is None else {**asdict(order), "expected": _expected_order(cell)},
         "floor": None if floor is None else asdict(floor),
         "cost": levels[-1].cost if levels and not math.isnan(levels[-1].cost) else None,
@@ -104,7 +110,16 @@ def measure(
     }
     measured = Measured(cell, judged, reaches, record, failed)
     record["status"] = measured.status
+    record["unbiased_to"] = _unbiased_to(measured)
     return measured
+
+
+def _unbiased_to(m: Measured) -> float | None:
+    """Return the smallest bias that would have been seen, as a share of the reference, where that is coarse; None elsewhere."""
+    if m.status != "passed" or m.cell.points != "random":
+        return None
+    seen = next((f.resolution.relative for f in m.judged.findings if f.check == "mean" and f.resolution), None)
+    return seen if seen is not None and seen >= _COARSE else None
 
 
 def _label(cell: Cell) -> str:
@@ -120,16 +135,22 @@ def _moments(data: Moments) -> dict[str, Any]:
     return {name: getattr(data, name) for name in names}
 
 
-def _rmse(cell: Cell, level: Level, data: Moments, error: float) -> Estimate:
+def _rmse(cell: Cell, level: Level, data: Moments, error: float, calls: Calls) -> Estimate:
     errors = level.rows[:, 1] - float(cell.reference.value)
     if cell.method.axis != "samples":
         size = float(np.abs(errors).max())
         return Estimate(size, max(size - error, 0.0), size + error)
-    return rmse(errors, kurtosis(cell, data) / level.count, error)
+    return rmse(errors, kurtosis(cell, level, data, calls), error)
 
 
 def _fall(
-    cell: Cell, levels: Sequence[Level], errors: Sequence[Estimate], data: Moments, value: float, error: float
+    cell: Cell,
+    levels: Sequence[Level],
+    errors: Sequence[Estimate],
+    data: Moments,
+    value: float,
+    error: float,
+    calls: Calls,
 ) -> tuple[Order | None, Floor | None]:
     """Return the order with which the error falls, and how near a march comes."""
     if not levels or cell.method.axis == "nothing":
@@ -138,7 +159,7 @@ def _fall(
     size = np.array([e.value for e in errors])
     steps = cell.method.axis == "steps"
     hidden = np.array([resolution_of(value, error, level.count if steps else 1) for level in levels])
-    freedom = np.array([math.inf if steps else degrees_of_freedom(cell, level, data) for level in levels])
+    freedom = np.array([math.inf if steps else degrees_of_freedom(cell, level, data, calls) for level in levels])
     return order_of(counts, size, freedom, hidden), floor_of(counts, size, hidden) if steps else None
 
 
@@ -146,21 +167,25 @@ def _expected_order(cell: Cell) -> float | None:
     return 0.5 if cell.method.axis == "samples" and cell.points == "random" else None
 
 
-def _bias(cell: Cell, levels: Sequence[Level], data: Moments, error: float) -> Estimate | None:
+def _bias(cell: Cell, levels: Sequence[Level], data: Moments, error: float, calls: Calls) -> Estimate | None:
+    """Return the mean less the reference: of all realisations if these are independent, else of the largest count's replicates."""
     if not levels or any(level.bad for level in levels):
         return None
-    if cell.method.axis == "samples" and cell.points == "random":
-        off, reach = data.mean - float(cell.reference.value), Z * data.stderr
-    else:
-        means = levels[-1].rows[:, 1]
-        off = float(means.mean()) - float(cell.reference.value)
-        scatter = float(means.std(ddof=1)) if len(means) > 1 else math.nan  # one alone says nothing of it
-        reach = Z * scatter / math.sqrt(len(means)) if cell.method.axis == "samples" else 0.0
+    value, means = float(cell.reference.value), levels[-1].rows[:, 1]
+    off, reach = float(means.mean()) - value, 0.0
+    if cell.method.axis == "samples":
+        one = len(means) < 2  # one alone says nothing of its scatter
+        stderr = math.nan if one else float(means.std(ddof=1)) / math.sqrt(len(means))
+        reach = math.nan if one else student_quantile(len(means) - 1, (1 - CONFIDENCE) / 2) * stderr
+        if cell.points == "random" and calls in ("independent", "doubtful"):
+            off = data.mean - value
+            reach = max(Z * data.stderr, reach if calls == "doubtful" else 0.0)
     return Estimate(off, off - reach - error, off + reach + error)
 
 
-def _variance(cell: Cell, data: Moments, variance: Reference | None) -> dict[str, Any] | None:
-    if cell.points == "sobol" or data.n < 2:
+def _variance(cell: Cell, data: Moments, variance: Reference | None, calls: Calls) -> dict[str, Any] | None:
+    """Return the variance of a realisation; None where realisations are not independent, and no interval is known."""
+    if cell.points == "sobol" or data.n < 2 or calls in ("dependent", "stratified"):
         return None
     reach = Z * spread(data)
     measured = data.variance

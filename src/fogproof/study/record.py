@@ -130,25 +130,39 @@ def exit_code(measured: Iterable[Measured], failed: bool, missing: bool) -> int:
 
 def advice(study: Study, measured: Sequence[Measured]) -> str:
     """Return which key of the study to raise for what is not judged unbiased yet, "" if nothing is open."""
-    waiting = [
-        m for m in measured if m.status == "inconclusive" and m.judged.times_as_many > 1 and m.cell.points == "random"
-    ]
-    alike = [m for m in waiting if m.record["moments"]["m2"] == 0]
-    skewed = [m for m in waiting if m not in alike]
+    waiting = [m for m in measured if m.status == "inconclusive" and m.cell.points == "random"]
+    more = [m for m in waiting if m.judged.times_as_many > 1]
+    alike = [m for m in more if m.record["moments"]["m2"] == 0]
     said = []
-    if skewed:
-        times = math.ceil(max(m.judged.times_as_many for m in skewed))
-        said.append(
-            f"Not judged unbiased yet, too few samples for so skewed values: {_names(skewed)}. Raise `replicates` to"
-            f" {times * study.replicates} at least, or the last of `samples` to {times * study.samples[-1]}; what is drawn"
-            " already is kept."
-        )
+    for lack, why in _LACKING.items():
+        some = [m for m in more if m not in alike and m.judged.lacks == lack]
+        if some:
+            times = max(m.judged.times_as_many for m in some)
+            replicates, last = (math.ceil(times * n) for n in (study.replicates, study.samples[-1]))
+            said.append(
+                f"Not judged unbiased yet, {why}: {_names(some)}. Raise `replicates` to {replicates} at least, or the last of"
+                f" `samples` to {last}; what is drawn already is kept."
+            )
     if alike:
         said.append(
             f"Not judged unbiased, all realisations are alike and are not the reference: {_names(alike)}. What has `bounds`, or"
             " a `variance` of 0, is judged: without them, values too rare to be met may make up the difference."
         )
+    beyond = [m for m in waiting if m.judged.lacks == "range"]
+    if beyond:
+        said.append(
+            f"Not judged, numbers so large or small that their powers leave binary64: {_names(beyond)}. No key helps: choose a"
+            " scene, or a unit, whose value is nearer to 1."
+        )
     return " ".join(said)
+
+
+_LACKING = {
+    "samples": "too few samples",
+    "law": "too few samples for so skewed values",
+    "resolution": "too few samples to see an error as large as the reference",
+    "calls": "too few replicates to tell whether realisations of one call depend on each other",
+}
 
 
 def _names(measured: Sequence[Measured]) -> str:

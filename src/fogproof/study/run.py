@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError, Future
 from dataclasses import dataclass, field
 
+from fogproof.errors import SubjectError
 from fogproof.study.batches import BatchResult, run_batch
 from fogproof.study.cells import Cell
 from fogproof.study.executors import ClusterError, Workers
@@ -85,11 +86,15 @@ def draw_missing(
 
 def _hand_out(study: Study, cells: Sequence[Cell], batch: Batch, pool: Workers, work: _Work, draw: DrawBatch) -> None:
     reference = float(cells[batch.cell].reference.value)
-    try:
-        future = pool.executor.submit(draw, study.text, study.folder, batch, reference)
-    except (BrokenExecutor, EOFError, ConnectionError):  # it, or what forks its workers, broke while nobody was looking
-        pool.restart()
-        future = pool.executor.submit(draw, study.text, study.folder, batch, reference)
+    for tries in range(ATTEMPTS):
+        try:
+            future = pool.executor.submit(draw, study.text, study.folder, batch, reference)
+            break
+        except (BrokenExecutor, EOFError, ConnectionError) as error:  # it, or what forks its workers, has been killed
+            if tries + 1 == ATTEMPTS:
+                what = "what starts the workers is killed again and again; what was drawn is kept"
+                raise SubjectError(f"{what}: give the same command again", "--executor") from error
+            pool.restart()
     work.running[future] = batch
 
 
@@ -99,12 +104,14 @@ def _collect(ready: set[Future[BatchResult]], work: _Work, store: Store, pool: W
     for future in ready:
         batch = work.running.pop(future)
         try:
-            good.append((batch, future.result()))
-        except BrokenExecutor:
-            broken.append(batch)
+            error = future.exception()  # not raised here: it may be a KeyboardInterrupt of the batch's own
         except CancelledError:  # not by us: a Dask scheduler does that when it ends
             raise ClusterError("the cluster was lost; what was drawn is kept: give the same command again") from None
-        except Exception as error:  # whatever a batch does, the others go on
+        if error is None:
+            good.append((batch, future.result()))
+        elif isinstance(error, BrokenExecutor):
+            broken.append(batch)
+        else:  # whatever a batch does, the others go on
             _again(batch, f"{type(error).__name__}: {error}", work, store, advance)
     if good:
         store.add([result for _, result in good])

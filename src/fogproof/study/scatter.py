@@ -6,18 +6,21 @@ import math
 
 from fogproof.checks.statistics.moments import Moments
 from fogproof.study.aggregate import Level
+from fogproof.study.between_replicates import Calls
 from fogproof.study.cells import Cell
 from fogproof.study.judgement import excess
 
 
-def kurtosis(cell: Cell, data: Moments) -> float:
-    """Return the excess kurtosis of realisations, 0 where they are means of scrambled points."""
-    return 0.0 if cell.points == "sobol" else excess(data)
+def kurtosis(cell: Cell, level: Level, data: Moments, calls: Calls = "independent") -> float:
+    """Return the excess kurtosis of a replicate's mean: 0 of scrambled or stratified points, all of it if a call is one number."""
+    if cell.points == "sobol" or calls == "stratified":
+        return 0.0
+    return excess(data) / (1 if calls == "dependent" else level.count)
 
 
-def degrees_of_freedom(cell: Cell, level: Level, data: Moments) -> float:
+def degrees_of_freedom(cell: Cell, level: Level, data: Moments, calls: Calls = "independent") -> float:
     """Return the degrees of freedom of a level's mean square."""
-    return len(level.rows) / (1 + max(kurtosis(cell, data) / level.count, 0.0) / 2)
+    return len(level.rows) / (1 + max(kurtosis(cell, level, data, calls), 0.0) / 2)
 
 
 def spread(data: Moments) -> float:

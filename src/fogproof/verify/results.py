@@ -63,8 +63,13 @@ def exit_code(results: Iterable[Result]) -> int:
 
     A broken twin that was not rejected counts as a failure: its checks are blind.
     """
-    results = list(results)
-    statuses = {result.status for result in results}
-    if statuses & {"rejected", "surprise", "error"} or any(r.twin and r.twin.outcome != "rejected" for r in results):
+    return code_of((result.status, result.twin) for result in results)
+
+
+def code_of(outcomes: Iterable[tuple[str, TwinResult | None]]) -> int:
+    """Return the exit code of cases by their (status, broken twin)."""
+    outcomes = list(outcomes)
+    statuses = {status for status, _ in outcomes}
+    if statuses & {"rejected", "surprise", "error"} or any(twin and twin.outcome != "rejected" for _, twin in outcomes):
         return 1
     return 3 if "inconclusive" in statuses else 0

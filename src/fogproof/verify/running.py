@@ -16,7 +16,7 @@ from typing import Any
 from fogproof.catalogue import Case
 from fogproof.checks.limits import end_isolated, isolated
 from fogproof.checks.streams import batch_generator
-from fogproof.errors import FogproofError, NotInstalledError
+from fogproof.errors import FogproofError, NotInstalledError, is_stop
 from fogproof.verify.results import Result, TwinResult, status_of
 from fogproof.verify.selection import shares, whole
 
@@ -100,7 +100,9 @@ def run_twin(case: Case, seed: int, alpha: float) -> TwinResult:
         verdict = case.run(alpha, case_seed(seed, case.name), few, twin=True)
         if verdict.outcome != "rejected" and few < case.samples:
             verdict = case.run(alpha, case_seed(seed, case.name), twin=True)
-    except Exception as error:  # the same as of a subject: a defect of one twin is its own result
+    except BaseException as error:  # the same as of a subject: a defect of one twin is its own result
+        if _ends_all(error):
+            raise
         return TwinResult("error", seconds=time.perf_counter() - started, reason=f"{type(error).__name__}: {error}")
     rejecting = [finding for finding in verdict.findings if finding.outcome == "rejected"]
     return TwinResult(
@@ -123,9 +125,16 @@ def _run_subject(case: Case, seed: int, alpha: float) -> Result:
         return Result(case, "skipped", None, str(error), time.perf_counter() - started)
     except FogproofError as error:
         return Result(case, "error", None, str(error), time.perf_counter() - started)
-    except Exception as error:  # a defect of a case must not cost the other cases' results
+    except BaseException as error:  # a defect of a case must not cost the other cases' results
+        if _ends_all(error):
+            raise
         return Result(case, "error", None, f"{type(error).__name__}: {error}", time.perf_counter() - started)
     return Result(case, status_of(verdict.outcome, case.expected), verdict, case.reason, time.perf_counter() - started)
+
+
+def _ends_all(error: BaseException) -> bool:
+    """Whether an error is no case's: a signal, or a module in another's place that asks for the end."""
+    return is_stop(error) or isinstance(error, SystemExit)
 
 
 def case_seed(seed: int, name: str) -> int:

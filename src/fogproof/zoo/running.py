@@ -148,9 +148,9 @@ class ZooLog:
     def read(self) -> tuple[list[ZooRow], int]:
         """Return the rows of earlier runs, and how many lines are damaged: what stood there is run again.
 
-        A machine that lost its power may leave bytes of zero; a file whose head is none of ours is refused.
+        A file whose head is none of ours is refused.
         """
-        lines = [text for line in self._lines() if (text := line.strip("\0"))]
+        lines = self._lines()
         if not lines:
             add_line(self.path, self.settings)
             return [], 0
@@ -163,6 +163,12 @@ class ZooLog:
             raise InvalidInputError(what, str(self.path))
         rows = [row for line in rest if (row := _row(line)) is not None]
         return list({row.name: row for row in rows}.values()), len(rest) - len(rows)
+
+    def seed(self) -> int | None:
+        """Return the seed of the rows that are kept, None if there are none."""
+        head = _read((self._lines() or [""])[0])
+        seed = head.get("seed") if isinstance(head, dict) else None
+        return seed if isinstance(seed, int) else None
 
     def _lines(self) -> list[str]:
         return whole_lines(read_text(self.path, "the rows")) if self.path.exists() else []

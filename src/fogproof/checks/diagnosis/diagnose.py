@@ -15,6 +15,7 @@ from fogproof.checks.diagnosis.factors import named_factor
 from fogproof.checks.diagnosis.fitting import likeliest
 from fogproof.checks.diagnosis.hypothesis import Setting
 from fogproof.checks.diagnosis.patience import OutOfTimeError, limited
+from fogproof.checks.diagnosis.periods import repeated
 from fogproof.checks.diagnosis.points import few_values, single_points
 from fogproof.checks.diagnosis.together import dependent
 from fogproof.checks.statistics.repeats import KEPT
@@ -60,6 +61,8 @@ def diagnosed(
     statistical = any(f.p_value is not None and f.cause in _STATISTICAL for f in rejected)
     if cause == "negative pdf":
         return cause, _exponential(subject, samples, seed)
+    if cause == "repeated samples":
+        return cause, repeated(subject, samples, seed)
     if cause in {"atom", _COARSE} | _CONSTANT | _STATISTICAL or (cause in _SYMPTOMS | _ZERO | _SHARES and statistical):
         try:
             with np.errstate(all="ignore"):
@@ -80,14 +83,15 @@ def _explained(subject: Subject, cause: str, findings: Sequence[Finding], sample
     """Return the cause and the words; what accounts for a share of the samples does not explain a law that is wrong beside it."""
     named, words, rest = ("", "", subject) if cause in _CONSTANT else single_points(subject, samples, seed)
     often = 0.0 if all(whole_columns(subject.domain)) else sum(rest.atoms.values()) - sum(subject.atoms.values())
+    few = _few_values(subject, samples, seed) if cause in {_COARSE} | _STATISTICAL else ""
+    if few and subject.domain.shape and named != "clamped":
+        return _COARSE, few
     if named == "clamped" or (named == "atom" and often > _MOSTLY):  # with what lies beyond: all of its misfit
         return named, words
-    shown = setting_of(subject, min(samples, SIZES[0]), seed) if cause == _COARSE else None
-    few = few_values(shown.contrast) if shown else ""
     if named == "sheet" and not few and (told := _beside_a_sheet(rest, words, samples, seed)):
         return told
-    if cause == _COARSE:
-        return cause, few
+    if few or cause == _COARSE:
+        return _COARSE, few
     if cause != "atom" and cause not in _SHARES:
         return _searched(subject, cause, findings, samples, seed)
     own = cause if cause in _SHARES else named or cause
@@ -97,12 +101,18 @@ def _explained(subject: Subject, cause: str, findings: Sequence[Finding], sample
     other, why = _searched(rest, "shape", findings, samples, seed)
     if cause in _SHARES:
         return other, f"{why}; " * bool(why) + "and the share of samples that are given up is another one"
-    if not why and (few := few_values(beside[0].contrast)):
+    if not why and (few := few_values(beside[0].contrast, rest)):
         return "coarse numbers", few
     if not why and not words:  # of one coordinate alone: no point comes again, and nothing else explains it
         return own, ""
     why = why or "the law is another one between single points too"
     return other, f"{why}; besides, {words}" if words else why
+
+
+def _few_values(subject: Subject, samples: int, seed: int) -> str:
+    n = min(samples, SIZES[0])
+    contrast = Contrast.of(subject, n, batch_generator(seed, "diagnosis", 0, n))
+    return few_values(contrast, subject) if contrast else ""
 
 
 def _beside_a_sheet(rest: Subject, words: str, samples: int, seed: int) -> tuple[str, str] | None:

@@ -10,7 +10,7 @@ from itertools import permutations
 
 import numpy as np
 
-from fogproof.checks.diagnosis import frames, grids, lobes, planes
+from fogproof.checks.diagnosis import folds, frames, grids, holes, lobes, planes
 from fogproof.checks.diagnosis.contrast import Density
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting, known_number, of_points
 
@@ -31,6 +31,7 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
     laws = list(lobes.hypotheses(setting))
     known = any(law.null is not None for law in laws)
     yield from _simple()
+    yield from folds.hypotheses(setting, "xyz", azimuth=(0, 1))
     for each in (*_of_places(setting), *_powers(setting), *(() if known else lobes.powers(setting))):
         yield replace(each, prior=-_FAMILY) if known and each.trials else each
     yield from laws
@@ -44,11 +45,6 @@ def _simple() -> Iterator[Hypothesis]:
     )
     yield Hypothesis(
         "sign convention", "these samples fit the pdf with z mirrored", lambda s, _: lambda x: s.p(x * _MIRROR)
-    )
-    yield Hypothesis(
-        "lost sign",
-        "these samples fit the pdf with its lower half folded up: the sign of z is lost",
-        lambda s, _: lambda x: (s.p(x) + s.p(x * _MIRROR)) * (x[:, 2] > 0),
     )
     for order in permutations(range(3)):
         if order != (0, 1, 2):
@@ -118,9 +114,9 @@ def _about_the_mean(setting: Setting) -> Iterator[Hypothesis]:
     length = float(np.linalg.norm(mean))
     if length < _LEAN or np.linalg.norm(np.cross(mean, (0, 0, 1))) < _ALONG * length:
         return
-    axis = mean / length
+    axis = frames.axis_of_symmetry(setting, mean / length)
     frame = frames.turn(axis, np.array([0.0, 0.0, 1.0]))
-    name = " about (" + ", ".join(f"{c:.3f}" for c in axis) + ")"
+    name = ", about (" + ", ".join(f"{c:.3f}" for c in axis) + ")"
     known = [
         (setting, _turned(setting, frame))
     ]  # the last one: hypotheses are asked of the same points again and again
@@ -132,8 +128,28 @@ def _about_the_mean(setting: Setting) -> Iterator[Hypothesis]:
         density = hypothesis.density(turned, value)
         return lambda x: density(turned.contrast.points if x is s.contrast.points else x @ frame.T)
 
-    for hypothesis in (*_sines(known[0][1]), *_powers(known[0][1])):
+    turned = known[0][1]
+    for hypothesis in (*_sines(turned), *_powers(turned), *_about_the_axis(), *holes.along(turned, 1)):
         yield replace(hypothesis, words=hypothesis.words + name, density=partial(lifted, hypothesis))
+
+
+def _about_the_axis() -> Iterator[Hypothesis]:
+    """Yield turns about z: by a quarter, which swaps the axes of an anisotropic lobe, and by any angle."""
+    words = "these samples fit the pdf turned by a quarter: as of the two axes across swapped"
+    yield Hypothesis("swapped axes", words, lambda s, _: lambda x: s.p(x[:, [1, 0, 2]] * (1.0, -1.0, 1.0)))
+    yield Hypothesis(
+        "rotated frame",
+        "these samples fit the pdf turned by {value} of a turn",
+        lambda s, d: lambda x: s.p(x @ _spin(-2 * np.pi * d)),
+        grids.SHIFTS,
+        null=0.0,
+    )
+
+
+def _spin(angle: float) -> np.ndarray:
+    """Return the matrix (3, 3) that x @ matrix turns by an angle about z."""
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
 def _turned(setting: Setting, frame: np.ndarray) -> Setting:

@@ -12,7 +12,20 @@ from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting
 _LACK = 0.5  # of the expected samples: a place with fewer belongs to a hole
 _GAIN = 20.0  # samples that a hole must lack beyond that
 _SOME = 0.4  # share of samples that may follow another law: most do not
-_HALF_TURN = 2e-3
+_NEARLY_ALL = 0.9  # of a hole
+_BESIDE = 30  # samples
+_END = 1e-9  # of an axis
+_ENDLESS = 1e300  # beyond all numbers, as a known law has it
+_QUARTERS = {
+    1: ", a quarter of the turn: as of an azimuth that misses a quadrant",
+    2: ", half the turn",
+    3: ", three quarters of the turn",
+}
+_EMPTIED = {  # quarters of the turn, and the one where it begins, from -x
+    (2, 0): ", half the turn: as of an azimuth over pi where 2 pi is meant",
+    (2, 3): ", half the turn: as of an arctangent that keeps no quadrant, where atan2 is meant",
+    (3, 3): ", three quarters of the turn: as of an azimuth that stays in its first quadrant",
+}
 _EMPTY = 0.2  # the same for a cell of the tree
 _TELLING = 8.0  # samples expected in such a cell
 
@@ -22,9 +35,7 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
     law = setting.law
     if not law.stepped:
         for axis in range(len(law.axes)):
-            found = _hole(setting, axis)
-            if found is not None:
-                yield _outside(setting, axis, *found)
+            yield from along(setting, axis)
     yield from _empty_cells(setting)
     yield Hypothesis(
         "mixture",
@@ -35,53 +46,103 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
     )
 
 
+def along(setting: Setting, axis: int) -> Iterator[Hypothesis]:
+    """Yield the hole along one axis, if there is one."""
+    name, known = setting.law.axes[axis], _known_shares(setting, axis)
+    if known is None:
+        return
+    turn = name.split()[0] == "phi"  # it has no end
+    found = _hole(setting, axis, *known, turn)
+    if found is None:
+        return
+    low, high = found
+    exact = False
+    if len(setting.law.axes) == 1:
+        where = _stretch(setting, low, high)
+    elif turn:
+        low, high, guess = _quadrants(low, high, _coordinate(setting, setting.contrast.x, axis))
+        exact = bool(guess)
+        first, last = _degrees(low), _degrees(high)
+        where = f"the azimuths from {first:.4g} to {last:.4g} degrees{name.removeprefix('phi')}{guess}"
+    else:
+        where = f"the share {low:.4g} to {high:.4g} of the axis {name}"
+    end = not turn and (low <= _END or high >= 1 - _END or not _any_beyond(setting, axis, low, high))
+
+    def density(x: np.ndarray) -> np.ndarray:
+        u = _coordinate(setting, x, axis)
+        inside = (u - low) % 1.0 < high - low if turn else (u > low) & (u < high)
+        return np.where(inside, 0.0, setting.p(x))
+
+    cause = "missing tail" if end else "skipped band"
+    words = f"no sample lies in {where}; the others fit the pdf"
+    yield Hypothesis(cause, words, lambda s, _: density, fitted=not exact)  # as far as a sample that bounds it
+
+
 def _coordinate(setting: Setting, x: np.ndarray, axis: int) -> np.ndarray:
     return setting.law.coordinates(x, np.full((len(x), len(setting.law.axes)), 0.5))[:, axis]
 
 
-def _hole(setting: Setting, axis: int) -> tuple[float, float] | None:
-    """Return the ends, in [0, 1], of the stretch along an axis that lacks most samples; None if none lacks half of them.
-
-    A stretch from one sample to another gains half the samples that the claim puts there and loses those that are there: the
-    greatest gain is a maximum of differences of one sequence.
-    """
-    contrast = setting.contrast
-    samples = np.concatenate([[0.0], np.sort(_coordinate(setting, contrast.x, axis)), [1.0]])
-    known = _coordinate(setting, contrast.z, axis)
-    n = len(contrast.x)
-    weight = setting.values[n:] / contrast.q[n:]
+def _known_shares(setting: Setting, axis: int) -> tuple[np.ndarray, np.ndarray] | None:
+    """Return places along an axis, from 0 to 1, and which share of the claim lies before each; None if it has nothing there."""
+    n = len(setting.contrast.x)
+    known = _coordinate(setting, setting.contrast.z, axis)
     order = np.argsort(known)
-    share = np.cumsum(weight[order])
+    share = np.cumsum((setting.values[n:] / setting.contrast.q[n:])[order])
     if not share[-1] > 0:
         return None
-    places = np.concatenate([[0.0], known[order], [1.0]])
-    claim = np.interp(samples, places, np.concatenate([[0.0], share / share[-1], [1.0]]))
-    sequence = _LACK * len(contrast.x) * claim - np.arange(len(samples))
+    return np.concatenate([[0.0], known[order], [1.0]]), np.concatenate([[0.0], share / share[-1], [1.0]])
+
+
+def _hole(setting: Setting, axis: int, places: np.ndarray, share: np.ndarray, turn: bool) -> tuple[float, float] | None:
+    """Return the ends of the stretch along an axis that lacks most samples, of [0, 1]; None if none lacks half of them.
+
+    A stretch from one sample to another gains half the samples that the claim puts there and loses those that are there: the
+    greatest gain is a maximum of differences of one sequence. A turn is gone twice, and its stretch may end beyond 1.
+    """
+    samples = np.sort(_coordinate(setting, setting.contrast.x, axis))
+    n = len(samples)
+    claim = np.interp(samples, places, share)
+    if turn:
+        samples, claim = np.concatenate([samples, 1 + samples]), np.concatenate([claim, 1 + claim])
+    else:
+        samples, claim = np.concatenate([[0.0], samples, [1.0]]), np.concatenate([[0.0], claim, [1.0]])
+    sequence = _LACK * n * claim - np.arange(len(samples))
     least = np.minimum.accumulate(sequence)
     last = int(np.argmax(sequence - least))
     if sequence[last] - least[last] < _GAIN:
         return None
-    return float(samples[int(np.argmin(sequence[: last + 1]))]), float(samples[last])
+    first = int(np.argmin(sequence[: last + 1]))
+    widest = first + int(np.argmax(np.diff(samples[first : last + 1])))
+    if samples[widest + 1] - samples[widest] > _NEARLY_ALL * (samples[last] - samples[first]):
+        first, last = widest, widest + 1  # few points tell what the claim puts at an edge, and samples where it is
+    return float(samples[first]), float(samples[last])
 
 
-def _outside(setting: Setting, axis: int, low: float, high: float) -> Hypothesis:
-    name = setting.law.axes[axis]
-    if len(setting.law.axes) == 1 and not setting.law.stepped:
-        ends = setting.law.place(np.array([[low], [min(high, 1 - 2.0**-53)]]))
-        where = f"{ends.min():.5g} < x < {ends.max():.5g}"
-    else:
-        where = f"the share {low:.4g} to {high:.4g} of the axis {name}"
-    turn = name.split()[0] == "phi"  # it has no end
-    if turn and abs(high - low - 0.5) < _HALF_TURN:
-        where += ", half the turn: as of an azimuth over pi where 2 pi is meant"
-    end = not turn and (low <= 1e-9 or high >= 1 - 1e-9 or not _any_beyond(setting, axis, low, high))
+def _stretch(setting: Setting, low: float, high: float) -> str:
+    """Return in words where a stretch of numbers is; what has no end is told none."""
+    first, last = setting.law.place(np.array([[low], [min(high, 1 - 2.0**-53)]])).tolist()
+    if high >= 1 - _END and not np.isfinite(setting.domain.measure):
+        return f"x > {first:.5g}"
+    return f"x < {last:.5g}" if abs(first) > _ENDLESS else f"{first:.5g} < x < {last:.5g}"
 
-    def density(x: np.ndarray) -> np.ndarray:
-        u = _coordinate(setting, x, axis)
-        return np.where((u > low) & (u < high), 0.0, setting.p(x))
 
-    cause = "missing tail" if end else "skipped band"
-    return Hypothesis(cause, f"no sample lies in {where}; the others fit the pdf", lambda s, _: density)
+def _quadrants(low: float, high: float, u: np.ndarray) -> tuple[float, float, str]:
+    """Return the ends of a hole in a turn, at axes if it is one of whole quadrants, and in words what empties such a one.
+
+    u  (n,) of the samples, which bound it: an axis is its end where few samples lie as close to the hole on the other side
+    """
+    first, last = round(4 * low), round(4 * high)
+    quarters, turns = last - first, first // 4
+    beside = np.count_nonzero((low - u) % 1.0 <= abs(low - first / 4))
+    beyond = np.count_nonzero((u - high) % 1.0 <= abs(high - last / 4))
+    if quarters not in _QUARTERS or max(beside, beyond) > _BESIDE:
+        return low, high, ""
+    return first / 4 - turns, last / 4 - turns, _EMPTIED.get((quarters, first % 4), _QUARTERS[quarters])
+
+
+def _degrees(share: float) -> float:
+    """Return the azimuth of a share of the turn, which begins at -x."""
+    return 360 * share - 180
 
 
 def _any_beyond(setting: Setting, axis: int, low: float, high: float) -> bool:

@@ -8,6 +8,7 @@ from functools import partial
 
 import numpy as np
 
+from fogproof.checks.diagnosis import folds
 from fogproof.checks.diagnosis.contrast import Density
 from fogproof.checks.diagnosis.grids import SHIFTS
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting, known_number
@@ -56,6 +57,7 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
     else:
         yield Hypothesis("sign convention", "these samples fit the pdf of -x", lambda s, _: lambda x: s.p(-x))
     if isinstance(domain, RealLine):
+        yield from folds.hypotheses(setting, "x")
         yield from _of_another_deviation(setting)
     yield from _of_another_scale(setting, origin)
     if isinstance(domain, HalfLine):

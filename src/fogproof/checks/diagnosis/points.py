@@ -27,6 +27,7 @@ _OFTEN = 10  # times that a point must come
 _INNERMOST = 16  # directions that may lie on one circle
 _FLAT = 1e-9  # distance from their plane, of their own distances or of one
 _BEYOND = 3.0  # standard errors of a probability that is none by chance
+_APART = 1e3  # times what rounding does: single values
 _CHANCE = 5.0  # standard errors that chance makes
 
 
@@ -161,13 +162,36 @@ def _key(point: np.ndarray) -> tuple[float, ...] | float:
     return tuple(point.tolist()) if point.ndim else float(point)
 
 
-def few_values(contrast: Contrast) -> str:
-    """Return in words which coordinate takes few values alone, "" if none does."""
-    if contrast.law.stepped:
-        return ""
-    u = contrast.law.coordinates(contrast.x, np.full((len(contrast.x), len(contrast.law.axes)), 0.5))
-    for name, column in zip(contrast.law.axes, u.T, strict=True):
-        values = len(np.unique(np.round(column, _DIGITS)))
-        if 1 < values <= len(column) // _OFTEN:
-            return f"{name} takes {values} values alone"
+def few_values(contrast: Contrast, subject: Subject) -> str:
+    """Return in words which coordinate takes few values alone, "" if none does.
+
+    Values that rounding puts side by side, as of a lobe narrower than it tells apart, are not few, and those of as few points of
+    several coordinates belong to the points.
+    """
+    half = np.full((len(contrast.x), len(contrast.law.axes)), 0.5)
+    u = contrast.law.coordinates(contrast.x, half)
+    moves = [np.abs(contrast.law.coordinates(moved, half) - u) for moved in subject.nudged(contrast.x)]
+    rounding = np.median(np.max(moves, axis=0), axis=0) + 10.0**-_DIGITS
+    points = len(np.unique(contrast.x, axis=0)) if len(u.T) > 1 else len(u) + 1
+    for name, column, least, stepped in zip(
+        contrast.law.axes, u.T, _APART * rounding, _stepped(contrast, subject.domain), strict=True
+    ):
+        values = np.unique(np.round(column, _DIGITS))
+        few = 1 < len(values) <= len(column) // _OFTEN and len(values) < points
+        if not stepped and few and np.median(np.diff(values)) > least:
+            return f"{name} takes {len(values)} values alone"
     return ""
+
+
+def _stepped(contrast: Contrast, domain: Domain) -> list[bool]:
+    """Return of which axes of the known law single values have probability."""
+    if not isinstance(domain, Product):
+        return [contrast.law.stepped] * len(contrast.law.axes)
+    flags: list[bool] = []
+    first = 0
+    for part in domain.parts:
+        last = first + math.prod(part.shape)
+        law = part.law(contrast.x[:0, first:last].reshape(0, *part.shape))
+        flags += [law.stepped] * len(law.axes)
+        first = last
+    return flags

@@ -8,6 +8,7 @@ from itertools import permutations
 
 import numpy as np
 
+from fogproof.checks.diagnosis import folds
 from fogproof.checks.diagnosis.contrast import Density
 from fogproof.checks.diagnosis.grids import SHIFTS
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting, known_number, of_points
@@ -39,6 +40,8 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
             yield from _along(axis, float(box[0, axis]), float(box[1, axis]))
     else:
         yield Hypothesis("sign convention", "these samples fit the pdf of -x", lambda s, _: lambda x: s.p(-x))
+    names = [f"coordinate {axis}" for axis in range(k)]
+    yield from folds.hypotheses(setting, names, azimuth=(0, 1) if box is None else ())
     if k == 2 and box is None:
         yield from _folded(setting, center)
     yield Hypothesis(

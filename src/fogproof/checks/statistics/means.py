@@ -29,7 +29,7 @@ LARGEST_CORRECTION = 1.0  # of the exponent |skewness| z^3 / (3 sqrt n); beyond 
 LARGEST_SHARE = 0.05  # of one sample in the sum of squares; beyond it the variance itself may be infinite
 _ROUNDING = 16 * 2.0**-53  # relative: of values, and of their sum
 _UNDERFLOW = sys.float_info.min  # an error below it is what rounding leaves of an exact 0
-_LEAST = 100  # samples, below which none but declared facts tells anything
+LEAST = 100  # samples, below which none but declared facts tells anything
 _SHORT = 4.0  # standard deviations by which a sample's variance may fall short of the declared one
 DOUBT = 0.01
 """A p-value below this that holds for every law, where the usual test could not be used, is no pass yet."""
@@ -99,7 +99,7 @@ def trusted(data: Moments, alpha: float, known: Known = NOTHING) -> bool:
         return False
     if two_valued(data) or data.m2 == 0:
         return True
-    if data.n < _LEAST:
+    if data.n < LEAST:
         return False
     growth = abs(data.skewness) / (3 * math.sqrt(data.n)) * normal_quantile(alpha / 2) ** 3
     return growth <= LARGEST_CORRECTION and data.largest_share <= LARGEST_SHARE
@@ -179,8 +179,8 @@ def _why_not(
         return f"; the sample varies by {data.deviation:.3g}, less than the declared {known.deviation:.3g}: rare values are missing"
     declare = "" if known.two_sided else ways.of_values()
     declare += unseen(data, effect, error, alpha, known)
-    if data.n < _LEAST:
-        return f"; {data.n} are too few to know their law: ask for {_LEAST} at least{declare}"
+    if data.n < LEAST:
+        return f"; {data.n} are too few to know their law: ask for {LEAST} at least{declare}"
     enough = max(math.ceil(data.n * max(exponent / LARGEST_CORRECTION, 1) ** 2), 4 * data.n)
     largest = f"the largest sample has {data.largest_share:.1%} of the variance"
     why = f"too skewed for a test at alpha = {alpha:.1g} (skewness {data.skewness:.3g}, {largest})"

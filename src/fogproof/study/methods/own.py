@@ -4,7 +4,7 @@ The module lies beside the study file or is installed. The class, or a function 
 `Estimator(scene, **options)`; the scene is a `Question`, with `built_medium`, `ray`, `light`, `ambient`, …. What it makes has
 
     draw       (rng, n) -> (n,) independent realisations of the scene's quantity, or `Draws` with their cost; all chance comes
-               from rng, the workers' threads may call it at the same time
+               from rng, the workers' threads may call it at the same time. A call may stratify them, or pair them antithetically
     variance   the exact variance of a realisation, a number or a `Reference`; may be missing
     bounds     two numbers between which every realisation lies; may be missing. With both, even skewed ones are judged
 
@@ -25,7 +25,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from fogproof.contracts import Reference
-from fogproof.errors import FogproofError, InvalidInputError, InvalidValueError, SubjectError, shorten
+from fogproof.errors import FogproofError, InvalidInputError, InvalidValueError, SubjectError, is_stop, shorten
 from fogproof.study.methods.method import Method
 from fogproof.study.own_code import digest_of, loaded
 from fogproof.study.question import Question
@@ -129,7 +129,9 @@ class Own(Method):
             made = self._maker()(scene, **self.options)
         except FogproofError:
             raise
-        except (Exception, SystemExit) as error:
+        except BaseException as error:
+            if is_stop(error):
+                raise
             raise SubjectError(f"{self.source}: {type(error).__name__}: {error}", self.source) from None
         if not callable(getattr(made, "draw", None)):
             raise SubjectError(f"{self.source} made {type(made).__name__}, which has no draw(rng, n)", "draw")
@@ -148,5 +150,7 @@ class _Answering:
             return self.made.draw(rng, n)
         except FogproofError:
             raise
-        except (Exception, SystemExit) as error:  # what ends a program must not end a study
+        except BaseException as error:  # what ends a program must not end a study
+            if is_stop(error):
+                raise
             raise SubjectError(f"{self.source}: draw: {type(error).__name__}: {error}", "draw") from None

@@ -1,0 +1,229 @@
+"""Subjects that kill their parent, raise what means Ctrl-C, or write to stdout: told as theirs, and no other's result is lost."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
+
+import pytest
+from fuzz_commands import Run, here
+from study_fixtures import RAY, toml
+
+from fogproof.checks.limits import isolated, within
+from fogproof.errors import Stopped, SubjectError, is_stop, stop_behind
+
+POSIX = pytest.mark.skipif(os.name != "posix", reason="needs a system that can fork")
+CONSOLE = [sys.executable, "-c", "import sys; sys.path.pop(0); from fogproof_command import main; main()"]
+HOSTILE = """
+import atexit, ctypes, os, signal, sys
+import numpy as np
+
+C = ctypes.CDLL(None)
+
+def write(word):
+    print(f"{word} print", flush=True)
+    sys.__stdout__.write(f"{word} __stdout__")
+    os.write(1, f"{word} os".encode())
+    os.system(f"echo {word} shell")
+    C.printf(f"{word} C".encode())  # its buffer is written at the end of the process
+
+write("loading")
+atexit.register(write, "ending")
+
+class Draw:
+    def __init__(self, scene=None, what="", most=0):
+        self.what, self.most = what, most
+
+    def draw(self, rng, n):
+        if n > self.most:
+            hostile(self.what)
+        return (rng.random(n) < np.exp(-1)).astype(float)
+
+class End(BaseException):
+    pass
+
+def hostile(what):
+    if what == "parent":
+        os.kill(os.getppid(), signal.SIGKILL)
+    elif what == "group":
+        os.killpg(os.getpgid(os.getppid()), signal.SIGKILL)
+    elif what == "terminate":
+        os.kill(os.getppid(), signal.SIGTERM)
+    elif what == "child":
+        if os.fork() == 0:
+            os.kill(os.getppid(), signal.SIGKILL)
+            os._exit(0)
+        os.wait()
+    elif what == "stop":
+        raise KeyboardInterrupt
+    elif what == "generator":
+        raise GeneratorExit
+    elif what == "end":
+        raise End
+    elif what == "writes":
+        write("drawing")
+"""
+CASES = """
+from fogproof.catalogue import EstimatorCase
+def cases():
+    return [EstimatorCase(name=what or "right", make=lambda what=what: Draw(None, what), reference=np.exp(-1), samples=10_000)
+            for what in ("parent", "", "group", "terminate", "child", "stop", "generator", "end", "writes")]
+"""
+SCENE = {"name": "fog", "quantity": "transmittance", "medium": {"sigma_a": 0.2, "sigma_s": 0.3}, "ray": RAY}
+KILLED = "killed the process that had started it"
+
+
+def ran(words, folder):
+    done = subprocess.run([*CONSOLE, *words], cwd=folder, capture_output=True, text=True, timeout=300)
+    assert "Traceback" not in done.stderr
+    assert done.stdout, done.stderr
+    return done, json.loads(done.stdout)  # that and nothing else
+
+
+@POSIX
+def test_cases(tmp_path):
+    (tmp_path / "mine.py").write_text(HOSTILE + CASES)
+    done, record = ran(["verify", "mine.py", "--seed", "1", "--json"], tmp_path)
+    assert done.returncode == record["exit_code"] == 1
+    found = {case["name"].removeprefix("mine/"): case for case in record["cases"]}
+    for name, words in {
+        "parent": KILLED,
+        "terminate": KILLED,
+        "group": "ended the process, exit code -9",  # its own group: it has killed itself, too
+        "child": "ended the process, exit code -9",
+        "stop": "draw(rng, n) raised KeyboardInterrupt",
+        "generator": "draw(rng, n) raised GeneratorExit",
+        "end": "End",
+    }.items():
+        assert (found[name]["status"], words in found[name]["reason"]) == ("error", True), found[name]
+    assert {found[name]["status"] for name in ("right", "writes")} == {"passed"}
+    for word in ("loading", "drawing", "ending"):
+        for way in ("print", "__stdout__", "os", "shell", "C"):
+            assert f"{word} {way}" in done.stderr
+
+
+def study(folder, *estimators):
+    (folder / "mine.py").write_text(HOSTILE)
+    table = {"samples": [64, 512], "replicates": 4, "batch": 512, "sobol": False}
+    own = [{"kind": "mine:Draw", **options} for options in estimators]
+    (folder / "study.toml").write_text(toml({**table, "scenes": [{**SCENE, "estimators": ["analog", *own]}]}))
+    return ["study", str(folder / "study.toml"), "-o", str(folder / "out"), "--workers", "1"]
+
+
+def statuses(record):
+    return {estimator["name"]: estimator["status"] for estimator in record["scenes"][0]["estimators"]}
+
+
+@POSIX
+def test_estimators_that_write_and_raise(tmp_path):
+    hostile = [{"what": what, "most": 64} for what in ("stop", "generator", "end")]
+    words = study(tmp_path, {"what": "writes"}, *hostile)
+    done, record = ran([*words, "--json"], tmp_path)
+    assert (done.returncode, record["state"]) == (1, "finished")
+    failed = {failure["estimator"].split()[-1]: failure["error"] for failure in record["failures"]}
+    assert failed.keys() == {"stop)", "generator)", "end)"}
+    assert "draw: KeyboardInterrupt" in failed["stop)"]
+    assert statuses(record)["analog"] == statuses(record)["mine:Draw (what = writes)"] == "passed"
+    assert "drawing C" in done.stderr
+
+
+@POSIX
+@pytest.mark.parametrize("what", ["parent", "group"])
+def test_an_estimator_that_kills_its_parent(tmp_path, monkeypatch, what):
+    monkeypatch.setattr("fogproof.study.run.ATTEMPTS", 1)  # a new pool of workers each
+    words = study(tmp_path, {"what": what, "most": 64})
+    assert here(Run(words)).code == 1
+    record = json.loads((tmp_path / "out" / "results.json").read_text())
+    assert {failure["estimator"] for failure in record["failures"]} == {f"mine:Draw (most = 64, what = {what})"}
+    assert "the worker that drew it died" in record["failures"][0]["error"]
+    assert statuses(record)["analog"] == "passed"
+    assert (tmp_path / "out" / "index.html").exists()
+
+
+@pytest.mark.parametrize("what", ["KeyboardInterrupt", "GeneratorExit", "type('End', (BaseException,), {})"])
+def test_loading(tmp_path, monkeypatch, what):
+    """In this process, where a signal could have been meant."""
+    monkeypatch.chdir(tmp_path)
+    Path("mine.py").write_text(f"raise {what}")
+    end = here(Run(["verify", "mine.py"]))
+    assert (end.code, b"mine.py: line 1: the code raises " in end.err) == (2, True), end.err
+
+
+@POSIX
+def test_a_signal_while_somebody_elses_file_is_loaded_is_a_stop(tmp_path):
+    (tmp_path / "mine.py").write_text("import time\nprint('loading', flush=True)\ntime.sleep(60)")
+
+    def hearing():
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+    child = subprocess.Popen(
+        [*CONSOLE, "verify", "mine.py"], cwd=tmp_path, stderr=subprocess.PIPE, text=True, preexec_fn=hearing
+    )
+    assert child.stderr.readline() == "loading\n"
+    child.send_signal(signal.SIGINT)
+    _, told = child.communicate(timeout=60)
+    assert (child.returncode, told.strip()) == (130, "fogproof: stopped")
+
+
+def test_what_is_a_stop():
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        assert is_stop(KeyboardInterrupt())  # Python's own handler
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        assert not is_stop(KeyboardInterrupt())
+        assert stop_behind(KeyboardInterrupt()) is None
+        assert is_stop(Stopped(signal.SIGTERM))
+        assert not is_stop(GeneratorExit())
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def kills_its_parent():
+    os.kill(os.getppid(), signal.SIGKILL)
+    return 3
+
+
+def stops_its_parent():
+    os.kill(os.getppid(), signal.SIGSTOP)
+    os.kill(os.getppid(), signal.SIGCONT)
+    return 3
+
+
+def closes_and_opens_files():
+    os.closerange(3, 64)
+    for number in range(32):
+        os.open(f"file{number}", os.O_CREAT | os.O_RDWR)
+
+
+@POSIX
+@pytest.mark.parametrize("run", [isolated, lambda check: within(60, check)], ids=["isolated", "within"])
+def test_the_last_thing_it_does_is_seen(run):
+    with pytest.raises(SubjectError, match=KILLED):
+        run(kills_its_parent)
+    assert run(stops_its_parent) == 3
+
+
+@POSIX
+def test_no_question_is_written_into_its_files(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SubjectError):
+        within(60, closes_and_opens_files)
+    assert not any(b"?" in file.read_bytes() for file in tmp_path.iterdir())
+
+
+@POSIX
+def test_main_in_a_callers_process_leaves_its_stdout_alone():
+    code = textwrap.dedent("""
+        import os, sys
+        from fogproof.cli import main
+        try:
+            main(["list", "fog/analog/haze"])
+        except SystemExit:
+            pass
+        os.write(1, b"mine")
+    """)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert (done.stdout[:15], done.stdout[-4:]) == ("fog/analog/haze", "mine"), done
