@@ -60,6 +60,7 @@ def _environment() -> jinja2.Environment:
         "cases": cases,
         "duration": duration,
         "units_kept": units_kept,
+        "keys": keys,
         "breakable": breakable,
         "linked": linked,
         "smallest_p": smallest_p,
@@ -113,8 +114,15 @@ def linked(text: str, cases: Sequence[Case]) -> Markup:
     parts = re.split(f"({'|'.join(map(re.escape, names))})", text) if names else [text]
     link = Markup('<a href="#{}"><bdi>{}</bdi></a>')
     return Markup("").join(
-        link.format(quote(anchor(part)), breakable(part)) if part in names else visible(part) for part in parts
+        link.format(quote(anchor(part)), breakable(part)) if part in names else keys(visible(part)) for part in parts
     )
+
+
+def keys(text: str) -> Markup:
+    """Return a text in which what stands in back-ticks is code."""
+    from markupsafe import Markup, escape
+
+    return Markup(re.sub("`([a-z]+)`", r"<code>\1</code>", str(escape(text))))
 
 
 def grouped(value: float) -> str:

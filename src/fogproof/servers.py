@@ -28,6 +28,8 @@ from fogproof.foreign import installed_path
 PRELOAD = "FOGPROOF_PRELOAD"
 OURS = "fogproof"
 """What PYTHONSAFEPATH holds if it was set here."""
+ENDING = 0.3
+"""Seconds in which a server that has been killed is seen to be gone: until then none is started in its place."""
 _LONGEST = 60
 """Characters of a folder for sockets: their paths may have a hundred or so, and their names take forty."""
 _SHORT = "/tmp"

@@ -1,10 +1,12 @@
 """What people do wrong with numbers is named, small as it may be; what is not pinned is not told."""
 
+import re
+
 import numpy as np
 import pytest
 from laws_by_hand import TURN, bell, decay, even, exponential, hold, normal
 from scipy.special import erf
-from scipy.stats import beta, weibull_min
+from scipy.stats import beta, t, weibull_min
 
 from fogproof import HalfLine, Interval, RealLine, check_sampler
 
@@ -70,6 +72,77 @@ CASES = {  # sampler, pdf, domain, dimensions; the cause and words of what expla
         "",
     ),
 }
+
+
+KNOTS = np.linspace(0, 1, 9)
+HEIGHTS = np.array([1.0, 3, 2, 5, 4, 2, 6, 1, 2])
+HEIGHTS = HEIGHTS / np.trapezoid(HEIGHTS, KNOTS)
+SHARES = np.concatenate([[0], np.cumsum(0.5 * (HEIGHTS[1:] + HEIGHTS[:-1]) / 8)])
+
+
+def tabulated(u, segment):
+    """Samples of a density that is linear between knots, and even in one segment, as of an inverse that forgets its slope."""
+    v = u[:, 0]
+    i = np.clip(np.searchsorted(SHARES, v, side="right") - 1, 0, 7)
+    left = (v - SHARES[i]) / (SHARES[i + 1] - SHARES[i])
+    a, b = HEIGHTS[i], HEIGHTS[i + 1]
+    place = (np.sqrt(a * a + (b * b - a * a) * left) - a) / (b - a)
+    return (i + np.where(i == segment, left, place)) / 8
+
+
+def layered(u):
+    """Exponential samples, of which a layer of height 0.15 from 0 to 0.8 lies too far to the right."""
+    x = exponential(u)
+    return np.where((u[:, 1] * np.exp(-x) < 0.15) & (x < 0.8), x + 0.2, x)
+
+
+def moved(u):
+    x = exponential(u)
+    return np.where((x > 0.5) & (x < 1), x + 0.2, x)
+
+
+STRETCHES = {
+    "a segment of a table": (
+        lambda u: tabulated(u, 5),
+        lambda x: np.interp(x, KNOTS, HEIGHTS),
+        Interval(0, 1),
+        (0.625, 0.75),
+    ),
+    "a layer": (layered, decay, HalfLine(0), (0.0, 1.0)),
+    "a piece": (moved, decay, HalfLine(0), (0.5, 1.2)),
+}
+ELSEWHERE = {  # is the law wrong too, or not as many samples are there as should
+    "more in a stretch": (
+        lambda u: np.where(u[:, 1] < 0.03, 0.4 + 0.05 * u[:, 0], u[:, 0]),
+        even(1),
+        Interval(0, 1),
+    ),
+    "fewer in a stretch": (
+        lambda u: np.where((u[:, 0] > 0.4) & (u[:, 0] < 0.5), u[:, 1], u[:, 0]),
+        even(1),
+        Interval(0, 1),
+    ),
+    "ripples": (lambda u: u[:, 0] + 0.05 * np.sin(6 * np.pi * u[:, 0]) / TURN, even(1), Interval(0, 1)),
+    "heavy tails": (lambda u: t(5).ppf(np.clip(u[:, 0], 1e-12, 1 - 1e-12)), bell, RealLine()),
+    "another shape parameter": (lambda u: weibull_min(1.9).ppf(u[:, 0]), weibull_min(1.8).pdf, HalfLine(0)),
+}
+
+
+@pytest.mark.parametrize("name", STRETCHES)
+def test_a_stretch_that_is_displaced_is_told(name):
+    sample, pdf, domain, (low, high) = STRETCHES[name]
+    verdict = check_sampler(sample, pdf, domain, dimensions=2, samples=MORE)
+    assert (verdict.outcome, verdict.cause) == ("rejected", "displaced stretch"), str(verdict)
+    ends = [float(end) for end in re.search(r"in ([-0-9.e]+) < x < ([-0-9.e]+):", verdict.diagnosis).groups()]
+    assert np.allclose(ends, (low, high), atol=0.1), verdict.diagnosis
+
+
+@pytest.mark.parametrize("samples", [N, MORE])
+@pytest.mark.parametrize("name", ELSEWHERE)
+def test_no_stretch_is_displaced(name, samples):
+    verdict = check_sampler(*ELSEWHERE[name], dimensions=2, samples=samples)
+    assert verdict.outcome == "rejected"
+    assert "layer" not in verdict.diagnosis, str(verdict)
 
 
 @pytest.mark.parametrize("name", CASES)

@@ -1,6 +1,7 @@
 """Subjects that kill their parent, raise what means Ctrl-C, or write to stdout: told as theirs, and no other's result is lost."""
 
 import json
+import multiprocessing.forkserver
 import os
 import signal
 import subprocess
@@ -207,6 +208,13 @@ def test_the_last_thing_it_does_is_seen(run):
 
 
 @POSIX
+def test_a_server_of_processes_that_is_killed_is_started_again():
+    assert isolated(int) == 0
+    os.kill(multiprocessing.forkserver._forkserver._forkserver_pid, signal.SIGKILL)
+    assert isolated(int) == 0
+
+
+@POSIX
 def test_no_question_is_written_into_its_files(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(SubjectError):
@@ -227,3 +235,15 @@ def test_main_in_a_callers_process_leaves_its_stdout_alone():
     """)
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert (done.stdout[:15], done.stdout[-4:]) == ("fog/analog/haze", "mine"), done
+
+
+@POSIX
+def test_what_a_subject_writes_is_not_on_a_callers_stdout():
+    code = """if True:
+        import functools, os
+        from fogproof.checks.limits import isolated
+        isolated(functools.partial(os.write, 1, b"theirs"))
+        print("mine")
+    """
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert (done.stdout, "theirs" in done.stderr) == ("mine\n", True)

@@ -108,7 +108,7 @@ def test_a_full_disk_behind_stdout_is_a_sentence():
     with open("/dev/full", "w") as full:
         out = subprocess.run([*COMMAND, "list"], stdout=full, stderr=subprocess.PIPE, text=True)
     assert out.returncode == 2
-    assert out.stderr.strip() == "fogproof: No space left on device"
+    assert out.stderr.strip() == "fogproof: cannot write to stdout: No space left on device"
 
 
 def test_a_foreign_page_is_not_replaced(tmp_path):

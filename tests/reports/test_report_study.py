@@ -259,3 +259,4 @@ def test_what_to_raise_names_each_estimator_once_and_leads_to_it(tmp_path):
     (told,) = re.findall(r"<li>[^\n]*Whether it is biased cannot be said yet\.[^\n]*", page.html)
     (target,) = re.findall(r'<a href="#([^"]+)"><bdi>haze /<wbr> ratio</bdi></a>', told)
     assert any(unquote(target) == it.get("id") for it in page.all("div"))
+    assert "Raise <code>replicates</code> to 32." in told

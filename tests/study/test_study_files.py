@@ -35,6 +35,7 @@ FAULTS = [
     (["samples"], [], "samples must be rising"),
     (["samples"], [100, 1000.5], "samples.1"),
     (["replicates"], 2, "replicates must be a whole number >= 4"),
+    (["seed"], 10**23, "seed must be a whole number >= 0 and below 2^63"),
     (["alpha"], 2, "alpha must lie in"),
     (["alpha"], 1e-320, "alpha must lie in (0, 1), and not below 1e-100"),
     (["scenes"], [], "scenes is missing"),
@@ -83,6 +84,13 @@ def test_files_that_are_no_studies_are_told(tmp_path, text):
         read_study(file)
     with pytest.raises(FogproofError, match="cannot read the study file"):
         read_study(tmp_path / "none.toml")
+
+
+def test_a_date_is_no_title(tmp_path):
+    file = tmp_path / "study.toml"
+    file.write_text("title = 2020-01-01\n" + toml(SMALL))
+    with pytest.raises(FogproofError, match=r"study\.toml: 2020-01-01 is a date or a time, .*: put it in quotes"):
+        read_study(file)
 
 
 def test_the_documentation_lists_every_estimator_and_its_options():

@@ -9,7 +9,7 @@ from study_levels import COUNTS, MEAN, Law, cell, level, normal
 
 from fogproof.study.batches import COLUMNS, draw_batch
 from fogproof.study.convergence import Z, order_of
-from fogproof.study.judgement import judge
+from fogproof.study.judgement import inherited, judge
 from fogproof.study.methods import table as methods
 from fogproof.study.plan import batches_of
 
@@ -47,6 +47,19 @@ def test_what_would_not_have_shown_an_error_as_large_as_the_reference_is_not_cal
     for spread, lacks in ((0.1 * math.sqrt(COUNTS[1]), ""), (100.0, "resolution")):
         wide = [level(MEAN + spread * MEAN * rng.normal(size=(16, n))) for n in COUNTS]
         assert judge(cell(), wide, None, 1e-9).lacks == lacks
+
+
+def test_sobol_points_inherit_what_random_ones_are_rejected_for():
+    """Dependence is no bias: of Sobol points it is told by its name too."""
+    right = judge(cell(), levels(normal), None, 1e-9)
+    rng = np.random.default_rng()
+    alike = [level(MEAN + np.broadcast_to(rng.normal(size=(16, 1)), (16, n)).copy()) for n in COUNTS]
+    dependent, biased = (
+        judge(cell(), alike, None, 1e-9),
+        judge(cell(), levels(lambda rng, shape: 1 + normal(rng, shape)), None, 1e-9),
+    )
+    assert inherited(right, dependent).wrong == dependent.wrong == {"scatter of replicates"}
+    assert inherited(right, biased).wrong == {"random points"}
 
 
 def test_few_values_of_a_normal_law_are_few_and_not_skewed():

@@ -196,6 +196,7 @@ def test_what_was_not_followed_far_enough_is_no_loser():
     scene = synthetic(seed, laws, replicates=16)["scenes"][0]
     assert scene["estimators"][1]["speed"]["targets"][1]["how"] == "not-reached"
     assert "Who is soonest to 0.1 % and 0.01 % these counts do not tell" in scene["answer"]["text"]
+    assert re.search("(is|are) not there yet. So far: 0.1 % .* in .*, 0.01 % .* in ", scene["answer"]["text"])
 
 
 # ---- Planted estimators: a study of one scene whose estimators are the test's own.

@@ -10,6 +10,7 @@ import os
 import signal
 import sys
 import threading
+import time
 from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any, TypeVar
@@ -47,11 +48,16 @@ def isolated(check: Callable[[], Answer], seconds: float | None = None, preload:
     """
     if seconds is not None:
         time_limit("seconds", seconds)
-    try:
-        context = servers.context(list(preload))
-    except OSError as error:
-        raise _no_process(error) from None
-    return _answer_of(context, seconds, check)
+    for tries in range(_TRIES):
+        try:
+            return _answer_of(servers.context(list(preload)), seconds, check)
+        except OSError as error:
+            if (
+                not isinstance(error, ConnectionError | BlockingIOError) or tries + 1 == _TRIES
+            ):  # the latter: it ended meanwhile
+                raise _no_process(error) from None
+            time.sleep(servers.ENDING)
+    raise AssertionError("unreachable")
 
 
 def end_isolated() -> None:
@@ -63,6 +69,8 @@ def end_isolated() -> None:
 
 
 _NAME = "fogproof subject"
+_TRIES = 3
+"""A server of processes that is killed is started again so often for one subject."""
 _CLOSED = 74
 """The exit code of a process that cannot send its answer: EX_IOERR of sysexits.h."""
 
@@ -74,6 +82,8 @@ def _answer_of(context: Any, seconds: float | None, check: Callable[[], Answer])
         child.start()
     except (EOFError, OSError) as error:  # EOFError: the server of processes could start none, and ended
         ours.close()
+        if isinstance(error, ConnectionError):  # it was killed a moment ago
+            raise
         raise _no_process(error) from None
     finally:
         theirs.close()

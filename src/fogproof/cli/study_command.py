@@ -153,8 +153,14 @@ def _cells(estimator: dict[str, Any], targets: int) -> list[str]:
     bias = f"{estimator['bias']['value']:+.1e}" if estimator["bias"] else ""
     times = [_time(target) for target in speed["targets"]] if speed else []
     relative = _relative(speed["relative"]) if speed and speed["relative"] else ""
-    words = [one_line(estimator["name"]), unbiased, bias, f"{order['value']:.2f}" if order else ""]
+    words = [_name(estimator), unbiased, bias, f"{order['value']:.2f}" if order else ""]
     return [*words, *(times or [""] * targets), relative]
+
+
+def _name(estimator: dict[str, Any]) -> str:
+    """Return the name of a row, with the title that sentences call it by where somebody else wrote that."""
+    name, label = one_line(estimator["name"]), one_line(estimator["label"])
+    return f"{name} “{label}”" if ":" in estimator["kind"] and label != name else name
 
 
 def _relative(speed: dict[str, Any]) -> str:

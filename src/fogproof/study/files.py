@@ -82,7 +82,7 @@ class Study:
             raise InvalidValueError("replicates", f"must be at most {LARGEST_REPLICATES}", self.replicates)
         for name, least in (("replicates", 4), ("batch", 64), ("seed", 0)):
             if not least <= getattr(self, name) < 1 << 63:
-                raise InvalidValueError(name, f"must be a whole number >= {least}", getattr(self, name))
+                raise InvalidValueError(name, f"must be a whole number >= {least} and below 2^63", getattr(self, name))
         alpha_of(self.alpha)
         names = [scene.name for scene in self.scenes]
         if not names:
@@ -111,10 +111,15 @@ def read_study(path: str | Path) -> Study:
         )
     folder = str(path.resolve().parent)
     try:
-        normalised = _normalised(table, folder)
+        text = json.dumps(_normalised(table, folder), sort_keys=True, default=_no_text)
     except FogproofError as error:
         raise InvalidInputError(f"{path}: {error}", error.path) from None
-    return study_of(json.dumps(normalised, sort_keys=True, default=str), folder, str(path))
+    return study_of(text, folder, str(path))
+
+
+def _no_text(value: Any) -> str:
+    """Refuse what TOML knows and JSON does not: nothing in a study is a date."""
+    raise InvalidInputError(f"{value} is a date or a time, and no key of a study takes one: put it in quotes")
 
 
 def study_of(text: str, folder: str, origin: str = "study") -> Study:

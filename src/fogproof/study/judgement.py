@@ -183,6 +183,9 @@ def inherited(judged: Judged, twin: Judged) -> Judged:
     if twin.outcome == "not rejected" or judged.outcome == "rejected":
         return judged
     finding = Finding("random points", twin.outcome, f"with random points the estimator is {twin.outcome}")
+    if twin.wrong and not twin.wrong & BY_BIAS:  # for something else than a bias, which has its own name
+        first = next(f for f in twin.findings if f.outcome == "rejected")
+        finding = Finding(first.check, "rejected", f"with random points: {first.message}", cause=first.cause)
     return replace(judged, outcome=twin.outcome, findings=(*judged.findings, finding), times_as_many=twin.times_as_many)
 
 

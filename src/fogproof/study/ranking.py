@@ -128,29 +128,32 @@ def _none_comes(scene: Sequence[Measured]) -> str:
 def _soonest(found: Sequence[Soonest | None], lead: str) -> list[str]:
     """Return who is soonest to each error, in what time, and who is not to be told from it; and where the counts do not tell."""
     parts: list[str] = []
-    untold: list[tuple[int, tuple[Measured, ...]]] = []
+    untold: list[tuple[int, Soonest]] = []
     before = None
     there = [(one, target) for target, one in enumerate(found) if one is not None]
     for (first, beside), group in groupby(there, key=lambda pair: (pair[0].first, pair[0].beside)):
         told: dict[str, list[str]] = {}
         for one, target in group:
             if one.waiting:
-                untold.append((target, one.waiting))
+                untold.append((target, one))
             else:
                 told.setdefault(_time(one.reach), []).append(_percent(TARGETS[target]))
         if told:
-            again = first is before
-            place = f"{'' if again else 'first, though '}not to be told from {_some(beside)}" if beside else "soonest"
             times = ", ".join(f"{_listed(errors)} in {time}" for time, errors in told.items())
-            parts.append(f"{place}: {times}" if again else f"{_inside(first)} is {place}: {times}")
+            who = "" if first is before else f"{_inside(first)} is {'first' if beside else 'soonest'}: "
+            parts.append(f"{who}{times}{f', not to be told from {_some(beside)}' if beside else ''}")
             before = first
     text = lead + "; ".join(parts)
     said = [f"{text[:1].upper() + text[1:]}."] if parts else []
-    for waiting, targets in groupby(untold, key=lambda pair: pair[1]):
+    for waiting, group_of in groupby(untold, key=lambda pair: pair[1].waiting):
+        targets = list(group_of)
         errors = _listed([_percent(TARGETS[target]) for target, _ in targets])
+        there_now = [
+            f"{_percent(TARGETS[target])} {_inside(one.first)} in {_time(one.reach)}" for target, one in targets
+        ]
         late = f"{_listed([_inside(m) for m in waiting])} {'is' if len(waiting) == 1 else 'are'} not there yet"
         asked = f"{lead}who" if lead else "Who"
-        said.append(f"{asked} is soonest to {errors} these counts do not tell: {late}.")
+        said.append(f"{asked} is soonest to {errors} these counts do not tell: {late}. So far: {', '.join(there_now)}.")
     return said
 
 

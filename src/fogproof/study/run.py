@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import concurrent.futures
+import time
 from collections import Counter, deque
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError, Future
 from dataclasses import dataclass, field
 
+from fogproof import servers
 from fogproof.errors import SubjectError
 from fogproof.study.batches import BatchResult, run_batch
 from fogproof.study.cells import Cell
@@ -94,6 +96,7 @@ def _hand_out(study: Study, cells: Sequence[Cell], batch: Batch, pool: Workers, 
             if tries + 1 == ATTEMPTS:
                 what = "what starts the workers is killed again and again; what was drawn is kept"
                 raise SubjectError(f"{what}: give the same command again", "--executor") from error
+            time.sleep(servers.ENDING)
             pool.restart()
     work.running[future] = batch
 

@@ -61,7 +61,7 @@ def explanation(subject: Subject, setting: Setting, base: Fit, samples: int, see
     if gain < _STANDS_OUT or share < needed or gain < unexplained(many.contrast, many.values) + _CLEARLY:
         return None
     near = [each for each in found[1:] if each.cause != best.cause and each.score > best.score - _CLEARLY]
-    if share < _ALL_BUT and refused(many, best):
+    if share < _ALL_BUT and not best.hypothesis.loose and refused(many, best):
         most = math.floor(1000 * share) / 10
         told = (
             f"near to, but not: {best.words} (this explains {most:.1f}% of the misfit, and what is left is no chance)"

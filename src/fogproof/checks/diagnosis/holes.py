@@ -58,7 +58,7 @@ def along(setting: Setting, axis: int) -> Iterator[Hypothesis]:
     low, high = found
     exact = False
     if len(setting.law.axes) == 1:
-        where = _stretch(setting, low, high)
+        where = along_a_line(setting, low, high)
     elif turn:
         low, high, guess = _quadrants(low, high, _coordinate(setting, setting.contrast.x, axis))
         exact = bool(guess)
@@ -118,7 +118,7 @@ def _hole(setting: Setting, axis: int, places: np.ndarray, share: np.ndarray, tu
     return float(samples[first]), float(samples[last])
 
 
-def _stretch(setting: Setting, low: float, high: float) -> str:
+def along_a_line(setting: Setting, low: float, high: float) -> str:
     """Return in words where a stretch of numbers is; what has no end is told none."""
     first, last = setting.law.place(np.array([[low], [min(high, 1 - 2.0**-53)]])).tolist()
     if high >= 1 - _END and not np.isfinite(setting.domain.measure):

@@ -100,6 +100,7 @@ class Hypothesis:
     below    the class of error where the parameter is less than that, `cause` unless given
     prior    logarithm of how much likelier it is than others before any sample is seen
     otherwise  the class of error where the parameter is no whole or half number, `cause` unless given
+    loose    whether it only says where samples are wrong, in rates: what these leave there refutes nothing
     """
 
     cause: str
@@ -112,6 +113,7 @@ class Hypothesis:
     otherwise: str = ""
     null: float | None = None
     below: str = ""
+    loose: bool = False
 
     def caused(self, value: float, error: float) -> str:
         """Return the class of error, given the fitted parameter and its standard error."""

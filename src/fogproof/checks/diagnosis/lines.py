@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from fogproof.checks.diagnosis import folds
+from fogproof.checks.diagnosis import folds, stretches
 from fogproof.checks.diagnosis.contrast import Density
 from fogproof.checks.diagnosis.grids import SHIFTS
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting, known_number
@@ -76,6 +76,7 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
         null=0.0,
     )
     yield from _of_another_measure(origin)
+    yield from stretches.hypotheses(setting)
 
 
 def _turned_or_shifted_round(domain: Interval) -> Iterator[Hypothesis]:

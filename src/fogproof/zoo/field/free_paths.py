@@ -227,7 +227,7 @@ def bugs() -> list[Bug]:
             "rust#10099",
             _ziggurat,
             lambda t: np.exp(-t),
-            ("skipped band", "wrong layer"),
+            ("displaced stretch", "skipped band", "wrong layer"),
             **LINE,
         ),
     ]
