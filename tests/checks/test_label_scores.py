@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.linalg import eigh
 
 from fogproof import Box, check_sampler
 from fogproof.checks.statistics.label_scores import Basis, scores
@@ -41,7 +42,7 @@ def _score_of(shift, batches, n, rng):
     for _ in range(batches):
         u = rng.random((n, 3))
         told = rng.random(n) < 0.5 + 0.25 * shift * math.sqrt(3) * (2 * u[:, 0] - 1)
-        found.append(scores("", *basis.weighed(u, told.astype(float), np.full(n, 0.5)), n / 4, 1e-6))
+        found.append(scores("", *basis.weighed(u, told.astype(float), np.full(n, 0.5)), 1e-6))
     return found
 
 
@@ -52,6 +53,34 @@ def test_scores_find_an_error_of_the_stated_size():
     for shift, least, most in ((stated, 0.9, 1.0), (-stated, 0.9, 1.0), (stated / 2, 0.0, 0.5)):
         caught = np.mean([each.outcome == "rejected" for each in _score_of(shift, 60, 1 << 14, rng)])
         assert least <= caught <= most, f"{shift}: {caught}"
+
+
+def _mixed_with_uniform_points(basis, delta, n, rng):
+    """Return coins of samples of p (1 + delta), p = 2 x 2 y on the square, among uniform points; the check knows p alone."""
+    x = np.sqrt(rng.random((4 * n, 2)))
+    x = x[rng.random(4 * n) < 0.5 * (1 + delta(x))][:n]
+    u = np.concatenate([x, rng.random((n, 2))])
+    p = 4 * u[:, 0] * u[:, 1]
+    return basis.weighed(u, np.repeat([1.0, 0.0], n), p / (p + 1))
+
+
+def test_the_stated_size_is_that_under_the_claim_in_the_direction_that_shows_least():
+    """Where samples and known points lie apart, functions that live there move few coins: the size stated holds for these too."""
+    rng, n = np.random.default_rng(), 1 << 14
+    basis = Basis.of(np.sqrt(rng.random((4096, 2))))
+    total, products = _mixed_with_uniform_points(basis, lambda u: np.zeros(len(u)), n, rng)
+    stated = scores("", total, products, 1e-6).resolution.value
+    covariance, gram = products[0, :-1, :-1], products[1, :-1, :-1] / products[1, -1, -1]
+    shares, directions = eigh(gram, covariance)
+    assert shares[-1] > 1.5 * shares[0], "directions that show alike test nothing"
+    least = directions[:, -1] / np.sqrt(shares[-1])  # of mean square 1
+
+    def caught(size):
+        wrong = [_mixed_with_uniform_points(basis, lambda u: size * (least @ basis.at(u)), n, rng) for _ in range(40)]
+        return np.mean([scores("", *each, 1e-6).outcome == "rejected" for each in wrong])
+
+    assert caught(stated) >= 0.9
+    assert caught(stated / 2) <= 0.5
 
 
 def test_scores_follow_where_the_points_are():

@@ -1,9 +1,13 @@
 """Rounding in single precision is charged where it arises: narrow lobes are judged all the same, and right ones left alone."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from fogproof import Interval, UnitSphere, check_sampler
+from fogproof import Interval, UnitSphere, check_sampler, sampler_check
+from fogproof.checks.normalisation import pdf_noise
+from fogproof.checks.subject import Subject
 
 TENTH = 2 * np.sin(np.radians(0.1) / 2) ** 2
 SINGLE = {"dimensions": 2, "precision": "float32", "samples": 300_000}
@@ -109,3 +113,31 @@ def test_numbers_of_few_bits_may_be_0():
         lambda x: np.ones(len(x)), Interval(0, 1), dimensions=None, uniform_bits=16, samples=1 << 18,
     )  # fmt: skip
     assert verdict.outcome == "not rejected", str(verdict)
+
+
+def cumulated(g):
+    def cdf(x):
+        low = (1 - g * g) / (2 * g) * (1 / np.sqrt((1 - g) ** 2 + 2 * g * versine(x)) - 1 / (1 + g))
+        return np.stack([low, np.arctan2(x[:, 1], x[:, 0]) / (2 * np.pi) % 1], axis=-1)
+
+    return cdf
+
+
+@pytest.mark.parametrize("hint", ["", "cdf", "inverse"])
+@pytest.mark.parametrize("always", [always_single, rounded_at_last])
+def test_a_given_cdf_does_not_know_the_points_better_than_they_are(hint, always):
+    """Near the peak of g = 0.99 a step of the cosine in single precision is wider than a cell of the cdf: some stay empty."""
+    given = {hint: cumulated(0.99)} if hint else {}
+    right = check_sampler(always(lobe(0.99, 1, True)), lobe_pdf(0.99), UnitSphere(), **SINGLE, **given)
+    assert right.outcome == "not rejected", str(right)
+    wrong = sampler_check(always(lobe(0.9893, 1, True)), lobe_pdf(0.99), UnitSphere(), **SINGLE, **given)
+    assert wrong.unexplained().outcome == "rejected"
+
+
+def test_a_steep_pdf_in_double_precision_is_integrated_as_one():
+    """Its change over a rounding of the point is no noise of its own: the expected masses are known."""
+    subject = Subject(lobe(0.99, 1, True), lobe_pdf(0.99), UnitSphere(), 2, precision="float32")
+    points = subject.sample(np.random.default_rng().random((2048, 2))).astype(np.float64)
+    assert pdf_noise(subject, points) < 1e-8
+    single = replace(subject, pdf=lambda x: lobe_pdf(np.float32(0.99))(x.astype(np.float32)).astype(np.float64))
+    assert pdf_noise(single, points) > 1e-8

@@ -47,6 +47,17 @@ BAD = {
         "27000000 numbers",
     ),
     "too many orders": ({"quantity": "ball_albedo_orders", "radius": 1, "count": 10**9}, "too-large", "1000000001"),
+    "too many channels": (
+        {
+            "quantity": "coefficients",
+            "medium": {"kind": "exponential", "sigma_0": 1, "rate": [0, 0, 1]},
+            "x": [0, 0, 1],
+            "w": [0, 0, 1],
+            "channels": 10**40,
+        },
+        "too-large",
+        f"{10**40} numbers",
+    ),
     "NaN": ('{"quantity": "phase_pdf", "phase": {"kind": "rayleigh"}, "mu": NaN}', "invalid-input", "not JSON"),
     "Infinity": ('{"quantity": "sun_colour", "air_mass": Infinity}', "invalid-input", 'string "inf"'),
     "1e999": ('{"quantity": "sun_colour", "air_mass": 1e999}', "invalid-input", "largest float64"),

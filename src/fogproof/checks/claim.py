@@ -66,7 +66,7 @@ def claimed(subject: Subject, chart: Chart, points: np.ndarray, samples: int, ro
 
     pilot = chart.coordinates(points) if len(points) else np.empty((0, len(chart.axes)))
     leaves = integrated(chart, density, pilot, work)
-    grid = blurred(grid_of(chart, leaves, samples), chart, rounded)
+    grid = blurred(grid_of(chart, leaves, samples), chart.count, rounded)
     rounding = pdf_noise(subject, points) if subject.precision == "float32" else 0.0
     ranges = _ranges(chart, leaves, grid, density)
     floor = (FLOOR[subject.precision] + rounding) * _height(subject, leaves.total, points)

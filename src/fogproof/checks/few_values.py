@@ -30,7 +30,8 @@ def few_values(name: str, subject: Subject, axis: str, pilot: np.ndarray, points
         return law.coordinates(x, np.full((len(x), len(law.axes)), 0.5))[:, column]
 
     shown = points[:_NUDGED]
-    moves = [np.abs(coordinate(moved) - coordinate(shown)) for moved in subject.nudged(shown)]
+    place = coordinate(shown)
+    moves = [np.abs(coordinate(moved) - place) for moved in subject.nudged(shown)]
     moves = [np.minimum(move, 1 - move) for move in moves]
     rounding = float(np.median(np.max(moves, axis=0))) if len(shown) else 0.0
     t = coordinate(points)

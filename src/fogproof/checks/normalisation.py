@@ -18,6 +18,7 @@ FLOOR: dict[Precision, float] = {"float64": 2e-7, "float32": 2e-5}
 """An integral this close to its claim is never rejected: quadrature of a black box cannot promise more."""
 
 _COARSE = 1e-3  # an integral known no better says nothing
+_DOUBLE = 1e-8  # of a pdf: noise that leaves nothing of single precision's
 _UNSEEN = 2.0**-32  # nudges of a quarter of 2^-30: single precision has steps of 2^-24
 _JUMPING = 0.995  # quantile of the changes: some points in a hundred lie within a nudge of a step
 _MEASURES = {
@@ -33,18 +34,22 @@ _MEASURES = {
 
 
 def effort(subject: Subject, pilot: np.ndarray) -> Effort:
-    """Return how hard to integrate the subject's density: to a tenth of the error that is never rejected."""
-    noise = 8 * subject.roundoff
-    if subject.precision == "float32":
+    """Return how hard to integrate the subject's density: to a tenth of the error that is never rejected.
+
+    A pdf that computes in double precision is integrated as one, whatever the samples are made of.
+    """
+    noise, precision = 8 * subject.roundoff, subject.precision
+    if precision == "float32":
         noise = 8 * 2.0**-53 + pdf_noise(subject, pilot)
-    return Effort(0.1 * FLOOR[subject.precision], BUDGET[subject.precision], noise)
+        precision = "float32" if noise > _DOUBLE else "float64"
+    return Effort(0.1 * FLOOR[precision], BUDGET[precision], noise)
 
 
 def pdf_noise(subject: Subject, pilot: np.ndarray) -> float:
     """Return the relative noise of a pdf that may compute in single precision.
 
-    Points are moved by far less than single precision sees: a pdf that computes in it jumps at some of them, by its whole rounding
-    error; one that computes in double hardly changes.
+    Points are moved both ways by far less than single precision sees: a pdf that computes in it jumps at some of them, by its
+    whole rounding error; one that computes in double changes by as much one way as the other, however steep it is.
     """
     points = pilot[:2048]
     if len(points) == 0:
@@ -53,8 +58,11 @@ def pdf_noise(subject: Subject, pilot: np.ndarray) -> float:
     good = np.isfinite(p) & (p > 0)
     if not good.any():
         return 0.0
-    moves = [np.abs(subject.density(moved) / p[good] - 1) for moved in subject.nudged(points[good], _UNSEEN)]
-    change = np.max(moves, axis=0)
+    moved = [subject.density(x) / p[good] - 1 for x in subject.nudged(points[good], _UNSEEN)]
+    bends = [np.abs(forth + back) for forth, back in zip(moved[::2], moved[1::2], strict=False)]
+    if not bends:  # whole numbers are not moved
+        return 0.0
+    change = np.max(bends, axis=0)
     change = change[np.isfinite(change)]
     return float(np.quantile(change, _JUMPING)) if len(change) else 0.0
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -17,7 +16,7 @@ from fogproof.checks.density.charts import Chart, chart_of
 from fogproof.checks.density.features import Ranges
 from fogproof.checks.density.grid import Grid
 from fogproof.checks.density.grid_of_map import line_grid_from_cdf, pilot_grid, unit_cube_grid
-from fogproof.checks.density.rounding import ROUNDED, Rounded
+from fogproof.checks.density.rounding import ROUNDED, Rounded, blurred, coarsely_moved
 from fogproof.checks.edges import edge_uniforms, no_edge_uniforms
 from fogproof.checks.given_cdf import agreement, continuous_cdf, rosenblatt
 from fogproof.checks.hints import cube_map, cut, supported, why_not_inverse
@@ -40,6 +39,7 @@ from fogproof.errors import InvalidValueError
 _MOST_ENTRIES = 1 << 22  # of a table that is summed over
 _STEPS = 2.0  # of declared uniforms of few bits: a sample is made of one or two that matter
 _PRECISION_POINTS = 4096
+Count = Callable[[np.ndarray], tuple[np.ndarray, ...]]
 _CANCELLED = 4.0  # units in the last place of an axis that single precision may lose
 
 
@@ -75,7 +75,7 @@ def _prepared(subject: Subject, samples: int, seed: int, pilot: Pilot, chart: Ch
     rounded = _rounded(subject, pilot.points, seed)
     claim = None if chart is None else claimed(subject, chart, pilot.points, samples, rounded)
     if claim is None or claim.doubt:
-        return _by_labels(subject, samples, seed, pilot, claim, findings)
+        return _by_labels(subject, samples, seed, pilot, claim, findings, rounded)
     if subject.axis is not None and subject.mean_cosine is not None:
         findings.append(mean_cosine(subject, claim.chart, claim.density, claim.leaves, claim.work))
     if subject.eval is not None and subject.albedo is not None:
@@ -85,7 +85,7 @@ def _prepared(subject: Subject, samples: int, seed: int, pilot: Pilot, chart: Ch
     grid, count, mixture = claim.grid, claim.chart.count, None
     ranges: Ranges | None = claim.ranges
     if subject.cdf is not None:
-        grid, count = _by_cdf(subject, claim, samples)
+        grid, count = _by_cdf(subject, claim, samples, rounded)
         ranges = None
         if len(claim.chart.axes) == 1:
             findings.append(agreement(subject, claim, grid.marginals[0]))
@@ -95,7 +95,7 @@ def _prepared(subject: Subject, samples: int, seed: int, pilot: Pilot, chart: Ch
         law = subject.domain.law(pilot.points)
         mixture = MixtureTest.of(subject, law, pilot.points, seed, 1)
     if subject.inverse is not None:
-        grid, count, ranges = *_by_inverse(subject, samples), None
+        grid, count, ranges = *_by_inverse(subject, samples, rounded), None
     counter = _counter(subject, grid, count, ranges, pilot, mixture)
     return Prepared(subject, samples, pilot, claim, counter, tuple(findings), True)
 
@@ -118,14 +118,21 @@ def _questions(subject: Subject, pilot: Pilot, seed: int) -> list[Finding]:
     return findings
 
 
-def _by_inverse(subject: Subject, samples: int) -> tuple[Grid, Callable[[np.ndarray], Any]]:
+def _by_inverse(subject: Subject, samples: int, rounded: Rounded) -> tuple[Grid, Count]:
     """Return the cells of the unit cube, and how samples are counted in them by the given inverse."""
     cube = cube_map(subject)
-    labels = subject.domain.law(np.empty((0, *subject.domain.shape))).axes
-    grid = unit_cube_grid(
-        tuple(f"inverse, {k + 1} of {len(labels)}" for k in range(len(labels))), samples, subject.roundoff
-    )
-    return grid, lambda x: tuple(np.ascontiguousarray(cube(x).T))
+    axes = len(subject.domain.law(np.empty((0, *subject.domain.shape))).axes)
+    labels = tuple(f"inverse, {k + 1} of {axes}" for k in range(axes))
+    return _cube(subject, labels, samples, lambda x: tuple(np.ascontiguousarray(cube(x).T)), rounded)
+
+
+def _cube(
+    subject: Subject, labels: tuple[str, ...], samples: int, count: Count, rounded: Rounded
+) -> tuple[Grid, Count]:
+    """Return the cells of the unit cube under a given map, with what rounding does to points before they are mapped."""
+    if subject.precision == "float32":
+        rounded = coarsely_moved(subject.domain.law(rounded.points), rounded)
+    return blurred(unit_cube_grid(labels, samples, subject.roundoff), count, rounded), count
 
 
 def _rounded(subject: Subject, points: np.ndarray, seed: int) -> Rounded:
@@ -146,17 +153,23 @@ def _independent(grid: Grid) -> bool:
     return grid.plane is not None and grid.plane.independent
 
 
-def _by_cdf(subject: Subject, claim: Claim, samples: int) -> tuple[Grid, Callable[[np.ndarray], Any]]:
+def _by_cdf(subject: Subject, claim: Claim, samples: int, rounded: Rounded) -> tuple[Grid, Count]:
     """Return the cells that a given cdf makes, and how samples are counted in them."""
     if len(claim.chart.axes) == 1:
         cdf = partial(continuous_cdf, subject, claim.chart)
         return line_grid_from_cdf(claim.grid, cdf, 8 * subject.roundoff), claim.chart.count
     labels = tuple(f"cdf of {axis.label}" for axis in claim.chart.axes)
-    return unit_cube_grid(labels, samples, subject.roundoff), partial(rosenblatt, subject)
+    return _cube(subject, labels, samples, partial(rosenblatt, subject), rounded)
 
 
 def _by_labels(
-    subject: Subject, samples: int, seed: int, pilot: Pilot, claim: Claim | None, findings: list[Finding]
+    subject: Subject,
+    samples: int,
+    seed: int,
+    pilot: Pilot,
+    claim: Claim | None,
+    findings: list[Finding],
+    rounded: Rounded,
 ) -> Prepared:
     """Return what is to be judged by labels, because no quadrature knows the density."""
     wanted = int(np.clip(samples // 8, PILOT, LARGE_PILOT))
@@ -174,13 +187,15 @@ def _by_labels(
     if subject.cdf is not None and axes > 1 and not law.stepped:
         findings.append(jacobian_agreement(subject, pilot.points))
     if subject.inverse is not None and not law.stepped:
-        counter = _counter(subject, *_by_inverse(subject, samples), None, pilot, mixture)
+        counter = _counter(subject, *_by_inverse(subject, samples, rounded), None, pilot, mixture)
         return Prepared(subject, samples, pilot, claim, counter, tuple(findings), True)
     if subject.cdf is not None and (axes == 2 or claim is not None):
         line = claim is not None and axes == 1
         labels = (f"cdf of {law.axes[0]}", f"cdf of {law.axes[-1]}")
-        square = unit_cube_grid(labels, samples, subject.roundoff), partial(rosenblatt, subject)
-        grid, count = _by_cdf(subject, claim, samples) if claim is not None and line else square
+        if claim is not None and line:
+            grid, count = _by_cdf(subject, claim, samples, rounded)
+        else:
+            grid, count = _cube(subject, labels, samples, partial(rosenblatt, subject), rounded)
         counter = _counter(subject, grid, count, None, pilot, mixture)
         return Prepared(subject, samples, pilot, claim, counter, tuple(findings), True)
 
@@ -195,7 +210,7 @@ def _by_labels(
 def _counter(
     subject: Subject,
     grid: Grid,
-    count: Callable[[np.ndarray], tuple[np.ndarray, ...]],
+    count: Count,
     ranges: Ranges | None,
     pilot: Pilot,
     mixture: MixtureTest | None,

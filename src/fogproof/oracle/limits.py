@@ -70,6 +70,7 @@ def require_size(quantity: Quantity, arguments: dict[str, Any], most: int) -> No
     for name, declared in quantity.arguments.items():
         if Count in (declared if isinstance(declared, tuple) else (declared,)):
             size *= max(arguments[name], 0) + 1
+    size *= max(arguments.get("channels") or 1, 1)
     if size > most:
         raise TooLargeError(f"{quantity.name}: the answer would have {size} numbers; at most {most} are given", "")
 

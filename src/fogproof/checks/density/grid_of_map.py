@@ -44,18 +44,21 @@ def pilot_grid(labels: tuple[str, ...], u: np.ndarray) -> Grid:
 
 
 def unit_cube_grid(labels: tuple[str, ...], samples: int, roundoff: float) -> Grid:
-    """Return the cells of the unit cube, where a right sampler's points are uniform under a given map."""
+    """Return the cells of the unit cube, where a right sampler's points are uniform under a given map.
+
+    The map may be off by a few units in the last place, which moves samples across edges as rounding does.
+    """
     cells = cells_wanted(samples, min(len(labels), 2))
     edges, slack = np.arange(cells + 1) / cells, max(_LAST_PLACES * roundoff, 1e-14)
-    error, none, lookup = np.full(cells + 1, slack), np.zeros(cells + 1), Lookup.of(edges)
+    none, lookup = np.zeros(cells + 1), Lookup.of(edges)
+    blur = np.full(cells + 1, slack)
     marginals = tuple(
-        Marginal(label, edges, edges, edges, none, error, none, True, lookup, lambda c: c) for label in labels
+        Marginal(label, edges, edges, edges, none, none, blur, True, lookup, lambda c: c) for label in labels
     )
     if len(labels) != 2:
         return Grid(marginals, None)
     size = 1 << int(np.clip(0.5 * np.log2(max(samples, 1) / 2), np.log2(COARSE), np.log2(FINEST_PLANE)))
     rows = (np.arange(cells) * size) // cells
     mass = np.full((COARSE, COARSE), COARSE**-2.0)
-    share, zero = np.full(size, 1 / size), np.zeros(size + 1)
-    error = np.full_like(mass, slack)
-    return Grid(marginals, GridPlane((rows, rows), (share, share), zero, zero[1:], mass, error, True))
+    share, along, across = np.full(size, 1 / size), np.full(size + 1, slack), np.full(size, 2 * slack / size)
+    return Grid(marginals, GridPlane((rows, rows), (share, share), along, across, mass, np.zeros_like(mass), True))

@@ -7,13 +7,14 @@ nothing shows; then a coordinate made of coarse numbers may be off by a few of t
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
-from fogproof.checks.density.charts import Chart
 from fogproof.checks.density.grid import Grid, Marginal
+from fogproof.domains import Law
 
 ROUNDED = 8192
 """Points that show the effect of rounding."""
@@ -27,6 +28,7 @@ _DENSE = 1 / 4  # of a unit: values so close fill the steps of coarse numbers ma
 _ENOUGH = 0.1  # of the values, that are so close
 _HALF = 0.5
 _STEPS = 0.7  # of the way that values cover, in gaps of half a unit or more
+_TURNED = 1 - 2.0**-10  # of all probability: a point went once round, an angle under a map has ends
 _POLE = 0.02  # of the points, the nearest to a pole
 
 
@@ -49,26 +51,49 @@ class Rounded:
         return self.nudges if self.exact is None else [*self.nudges, self.exact]
 
 
-def blurred(grid: Grid, chart: Chart, rounded: Rounded) -> Grid:
-    """Return the grid with the probability that rounding moves a sample across each edge."""
+def coarsely_moved(law: Law, rounded: Rounded) -> Rounded:
+    """Return the same with points that are moved along coordinates made of coarse numbers as well.
+
+    A map may see points finer than they were made: that of a cosine close to 1, rounded before it became a vector.
+    """
+    points = rounded.points
+    if rounded.exact is not None or len(points) == 0:
+        return rounded
+    unit, moves = 0.5 * rounded.roundoff, []
+    t = law.coordinates(points, np.full((len(points), len(law.axes)), 0.5))
+    for axis in range(t.shape[1]):
+        if _coarse(t[:, axis], unit):
+            for step in (2 * _COARSE * unit, -2 * _COARSE * unit):
+                moved = t[:ROUNDED].copy()
+                moved[:, axis] = np.clip(moved[:, axis] + step, 0.0, 1.0)
+                moves.append(law.place(moved))
+    return replace(rounded, nudges=[*rounded.nudges, *moves])
+
+
+def blurred(grid: Grid, count: Callable[[np.ndarray], tuple[np.ndarray, ...]], rounded: Rounded) -> Grid:
+    """Return the grid with the probability that rounding moves a sample across each edge.
+
+    count  points (q, ...) -> the coordinates (q,) in which they are counted
+    """
     if len(rounded.points) == 0:
         return grid
-    everywhere = chart.count(rounded.points)
+    everywhere = count(rounded.points)
     counted = [c[:ROUNDED] for c in everywhere]
-    moved = [chart.count(points[:ROUNDED]) for points in rounded.moved]
+    moved = [count(points[:ROUNDED]) for points in rounded.moved]
     axes = []
     for axis, marginal in enumerate(grid.marginals):
         step = _step(marginal, everywhere[axis], rounded)
         others = [counted[axis] - step, counted[axis] + step, *(m[axis] for m in moved)]
         axes.append(_Axis(marginal, counted[axis], others, step, rounded.exact is not None, rounded.grain))
     blurs = [axis.blur(None if axis.marginal.ends else axes[1 - k]) for k, axis in enumerate(axes)]
-    marginals = tuple(replace(m, blur=blur) for m, blur in zip(grid.marginals, blurs, strict=True))
+    marginals = tuple(replace(m, blur=m.blur + blur) for m, blur in zip(grid.marginals, blurs, strict=True))
     plane = grid.plane
     if plane is not None:
         rows = plane.rows[0]
         first = blurs[0][np.append(np.searchsorted(rows, np.arange(plane.size)), len(rows))]
         edges = axes[0].marginal.cdf[np.append(np.searchsorted(rows, np.arange(plane.size)), len(rows))]
-        plane = replace(plane, along=first, across=axes[1].blur_in_rows(axes[0], edges))
+        across = axes[1].blur_in_rows(axes[0], edges)
+        plane = replace(plane, along=plane.along + first, across=plane.across + across)
     return Grid(marginals, plane)
 
 
@@ -96,8 +121,10 @@ class _Axis:
         """How far rounding moves each point, (q,), in probability."""
         at = self.at
         shifts = [np.abs(self._probability(other) - at) for other in self.others]
-        if not self.marginal.ends:
-            shifts = [np.minimum(shift, 1 - shift) for shift in shifts]
+        shifts = [
+            np.minimum(shift, 1 - shift) if not self.marginal.ends else np.where(shift > _TURNED, 1 - shift, shift)
+            for shift in shifts
+        ]
         if self.exact:
             shifts[-1] = _INSIDE * shifts[-1]
         return np.asarray(np.max(shifts, axis=0)) + self.grain

@@ -23,6 +23,7 @@ _BLOCK = 1 << 13  # points at once: what is computed of them stays in the cache
 _MOST = 80  # functions: products of axes far from each other are left out beyond
 _TELLING = 400.0  # variance of a weighed sum whose law is the normal one
 _FAR = 1e-4  # p-values below it are corrected for skewness
+_RATIO = "root mean square of the ratio of densities less 1"
 _EXPONENT = 600.0  # largest of that correction: no p-value that is not 0 needs more
 
 
@@ -71,19 +72,26 @@ class Basis:
         return found
 
     def weighed(self, u: np.ndarray, labels: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return sums (size,) of the residuals of points at u (n, k), weighed with the functions, and their covariance."""
-        total, covariance = np.zeros(self.size), np.zeros((self.size, self.size))
+        """Return sums (size,) of the residuals of points at u (n, k), weighed with the functions, and what they are measured by.
+
+        That is (2, size + 1, size + 1) sums of products of two functions, the last of which is 1: weighed with w (1 - w), they are
+        the covariance, and with w, the number of samples times the means of those products under the claim.
+        """
+        total, products = np.zeros(self.size), np.zeros((2, self.size + 1, self.size + 1))
+        functions = np.ones((self.size + 1, min(len(u), _BLOCK)))
         for start in range(0, len(u), _BLOCK):
             block = slice(start, start + _BLOCK)
-            functions = self.at(u[block])
-            total += functions @ (labels[block] - w[block])
-            covariance += (functions * (w[block] * (1 - w[block]))) @ functions.T
-        return total, covariance
+            f, here = functions[:, : len(u[block])], w[block]
+            f[:-1] = self.at(u[block])
+            total += f[:-1] @ (labels[block] - here)
+            claimed = (f * here) @ f.T
+            products += claimed - (f * here**2) @ f.T, claimed
+        return total, products
 
 
-def scores(name: str, total: np.ndarray, covariance: np.ndarray, doubt: float, alpha: float) -> Finding:
-    """Test weighed sums (q,) with their covariance (q, q); `doubt` is the variance of all residuals."""
-    values, vectors = np.linalg.eigh(covariance)
+def scores(name: str, total: np.ndarray, products: np.ndarray, alpha: float) -> Finding:
+    """Test weighed sums (q,), see `Basis.weighed` for `products`."""
+    values, vectors = np.linalg.eigh(products[0, :-1, :-1])
     told = values >= _TELLING
     if not told.any():  # whether that leaves the verdict open, the sum of all residuals says
         message = "too few coins are in doubt to be weighed: nothing was looked at"
@@ -95,7 +103,8 @@ def scores(name: str, total: np.ndarray, covariance: np.ndarray, doubt: float, a
         heavier = math.sqrt(statistic / float(values[told].min())) / 3
         p = min(_FAR, p * math.exp(min(0.5 * statistic * heavier / (1 + heavier), _EXPONENT)))
     rejected = p <= alpha
-    seen = math.sqrt(chi_square_detected(freedom, alpha, MISS) / doubt)
+    weakest = _most_of_least(products[1, :-1, :-1] / products[1, -1, -1], values[told], vectors[:, told])
+    seen = math.sqrt(chi_square_detected(freedom, alpha, MISS) * weakest)
     return Finding(
         name,
         "rejected" if rejected else "not rejected",
@@ -104,7 +113,17 @@ def scores(name: str, total: np.ndarray, covariance: np.ndarray, doubt: float, a
         alpha,
         p >= _FAR,
         statistic,
-        math.sqrt(max(statistic - freedom, 0.0) / doubt),
-        Resolution("smooth misfit (root mean square of the ratio of densities less 1)", seen * (1 + 0.5 * seen), MISS),
+        math.sqrt(max(statistic - freedom, 0.0) * weakest),
+        Resolution(f"part of a misfit along {freedom} smooth functions ({_RATIO})", seen * (1 + 0.5 * seen), MISS),
         cause="shape" if rejected else "",
     )
+
+
+def _most_of_least(gram: np.ndarray, values: np.ndarray, vectors: np.ndarray) -> float:
+    """Return the largest mean square of a misfit along the functions that adds 1 to the statistic.
+
+    gram              (q, q) means of products of two functions under the claim
+    values, vectors   (r,), (q, r) of the covariance: a misfit c f adds c' covariance c, and its mean square is c' gram c
+    """
+    inner = vectors.T @ gram @ vectors / np.sqrt(values * values[:, None])
+    return float(np.linalg.eigvalsh(inner)[-1])

@@ -41,7 +41,7 @@ class Sums:
     levels  one column a level of w
     integral  (5,) of p, by the points of the known law alone, see `Integrated`
     score   (q,) of residuals weighed with smooth functions of the point
-    spread  (q, q) their covariance
+    spread  (2, q + 1, q + 1) what they are measured by, see `Basis.weighed`
     strips  (4, r, 256) one row an axis or pair of axes, see `Strips`
     """
 
@@ -152,7 +152,7 @@ def levels(name: str, sums: tuple[Sums, ...], alpha: float) -> Finding:
 
 def smooth(name: str, sums: tuple[Sums, ...], alpha: float) -> Finding:
     """Score test of the residuals along smooth functions of the point."""
-    return _convention([scores(name, each.score, each.spread, float(each.cells[1].sum()), alpha) for each in sums])
+    return _convention([scores(name, each.score, each.spread, alpha) for each in sums])
 
 
 def along_axes(name: str, where: Strips, axes: tuple[str, ...], sums: tuple[Sums, ...], alpha: float) -> Finding:

@@ -37,7 +37,7 @@ def smooth(name: str, marginal: Marginal, counts: np.ndarray, alpha: float) -> F
     z = np.einsum("km,m->k", steps, counts.astype(float)) / math.sqrt(n)
     doubt = marginal.error + marginal.blur
     slack = math.sqrt(n) * np.sum(np.abs(np.diff(steps, axis=1)) * doubt[1:-1], axis=1)
-    finding = _judged(name, z, slack, n, alpha, f"smooth misfit in {marginal.label}")
+    finding = _judged(name, z, slack, n, alpha, f"part of a misfit in {marginal.label} along {len(z)} polynomials")
     if (
         float(np.max(marginal.mass)) > _COARSE
     ):  # coarse cells hide a part of each component: the law is no larger than chi-square
@@ -65,7 +65,8 @@ def cross(name: str, labels: tuple[str, str], plane: GridPlane, counts: np.ndarr
     white = (vectors / np.sqrt(np.maximum(values, 1e-12))).T @ products
     z = white @ counts.ravel() / math.sqrt(n)
     slack = math.sqrt(n) * (np.abs(white) @ plane.error.ravel() + _moved(plane, white))
-    return _judged(name, z, slack, n, alpha, f"smooth dependence of {labels[0]} and {labels[1]}", "correlation")
+    what = f"part of a dependence of {labels[0]} and {labels[1]} along {len(z)} products of polynomials"
+    return _judged(name, z, slack, n, alpha, what, "correlation")
 
 
 def _moved(plane: GridPlane, white: np.ndarray) -> np.ndarray:
