@@ -9,6 +9,7 @@ One that fails is made simpler for half a minute, not for the five that Hypothes
 
 import contextlib
 import random
+import signal
 
 import numpy as np
 import pytest
@@ -68,3 +69,11 @@ def pytest_fixture_setup(fixturedef, request):
     shared = fixturedef.scope != "function"
     with _entropy(request.config, name) if shared else contextlib.nullcontext():
         return (yield)
+
+
+@pytest.fixture
+def interruptible():
+    """Let Ctrl-C be heard: where tests run in the background, a shell may have had it ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)

@@ -134,7 +134,7 @@ def test_rounding_of_single_precision_points_is_part_of_the_cells_doubt():
     sine = np.sqrt(1 - mu * mu)
     points = np.stack([sine, np.zeros(2048), mu], axis=-1)
     chart, _, grid = sphere_model(pdf, POLE)
-    coarse = blurred(grid, chart, Rounded(points, nudged(points, 2.0**-24), None, 2.0**-24))
-    fine = blurred(grid, chart, Rounded(points, nudged(points, 2.0**-53), None, 2.0**-53))
+    coarse = blurred(grid, chart.count, Rounded(points, nudged(points, 2.0**-24), None, 2.0**-24))
+    fine = blurred(grid, chart.count, Rounded(points, nudged(points, 2.0**-53), None, 2.0**-53))
     assert coarse.marginals[0].blur.max() > 1e-4
     assert fine.marginals[0].blur.max() < 1e-9

@@ -410,7 +410,7 @@ def test_the_stated_resolution_of_labels_is_true():
 
 def test_few_coins_say_nothing():
     none = np.empty(0)
-    weighed = np.zeros(5), np.zeros((5, 5)), np.zeros((4, 3, 256))
+    weighed = np.zeros(5), np.zeros((2, 6, 6)), np.zeros((4, 3, 256))
     nothing = Sums.of(none, none, none.astype(int), 8, np.zeros(5), weighed)
     unweighed = labels.smooth("", (nothing,), 1e-6)
     assert (unweighed.outcome, unweighed.resolution) == ("not rejected", None), "that is for the sum of all to say"

@@ -80,7 +80,7 @@ def test_an_alpha_beside_the_run_is_counted():
     assert run.record()["alpha"] == pytest.approx(1e-4 + 1e-5 + 1e-3)
 
 
-def test_an_interrupted_check_is_not_judged():
+def test_an_interrupted_check_is_not_judged(interruptible):
     def interrupted(rng, n):
         raise KeyboardInterrupt
 

@@ -80,7 +80,7 @@ def test_a_page_of_somebody_else_is_not_replaced(tmp_path):
     assert (tmp_path / "stability.html").read_text() == "mine"
 
 
-def test_what_was_reached_is_kept_when_it_is_stopped(tmp_path, monkeypatch):
+def test_what_was_reached_is_kept_when_it_is_stopped(tmp_path, monkeypatch, interruptible):
     found = measuring.measure
 
     def measure(formula, points):

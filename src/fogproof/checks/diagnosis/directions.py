@@ -10,13 +10,12 @@ from itertools import permutations
 
 import numpy as np
 
-from fogproof.checks.diagnosis import folds, frames, grids, holes, lobes, planes
+from fogproof.checks.diagnosis import folds, frames, grids, half_vectors, holes, lobes, planes
 from fogproof.checks.diagnosis.contrast import Density
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting, known_number, of_points
 
 _MIRROR = np.array([1.0, 1.0, -1.0])
 _ALONG = 0.03  # from a coordinate axis: such a lobe is meant to be about it
-_UNIT_LENGTH = 0.3  # relative error of a direction that cells tell
 _OUTER, _STEPS = 512, 2000  # samples that may bound a cone, and steps towards its axis
 _FAMILY = math.log(20)  # how much likelier a law is off by its own parameter
 _EVEN = 1e-9  # relative difference of densities that are one
@@ -57,7 +56,7 @@ def _of_places(setting: Setting) -> Iterator[Hypothesis]:
     yield from _sines(setting)
     yield from _about_the_mean(setting)
     yield from planes.hypotheses(setting)
-    yield from _half_vectors(setting)
+    yield from half_vectors.hypotheses(setting)
     yield from frames.hypotheses(setting)
 
 
@@ -177,28 +176,6 @@ def _cone(setting: Setting) -> Iterator[Hypothesis]:
     angle, to = float(np.degrees(np.arccos(min(least, 1.0)))), ", ".join(f"{c:.4f}" for c in axis)
     words = f"no sample lies farther than {angle:.4g} degrees from ({to}), and the pdf has more; the others fit it"
     yield Hypothesis("missing tail", words, lambda s, _: lambda x: s.p(x) * (x @ axis >= least))
-
-
-def _half_vectors(setting: Setting) -> Iterator[Hypothesis]:
-    """Yield that directions reflected at a sampled half vector have the half vector's density.
-
-    With h the half of wo and x, dh/dx = 1 / (4 h . wo), and 2 h . wo = |wo + x| (Walter et al. 2007, eq. 14). Where wo is unknown,
-    in cells, samples over what the claim expects, to the power -2, are proportional to 1 + x . wo.
-    """
-    told = planes.ratios(setting)
-    if told is None:
-        return
-    places, ratio = told
-    level, *gradient = np.linalg.lstsq(np.column_stack([np.ones(len(places)), places]), ratio**-2.0, rcond=None)[0]
-    length = float(np.linalg.norm(gradient))
-    if not (level > 0 and abs(length / level - 1) < _UNIT_LENGTH):
-        return
-    wo = np.asarray(gradient) / length
-    to = ", ".join(f"{c:.3f}" for c in wo)
-    words = f"the Jacobian 1/(4 h . wo) of a reflection at half vectors h is missing, with wo = ({to})"
-    yield Hypothesis(
-        "missing Jacobian", words, lambda s, _: lambda x: s.p(x) / np.sqrt(np.maximum(1 + x @ wo, 1e-9)), fitted=2
-    )
 
 
 def _everywhere(x: np.ndarray) -> np.ndarray:
