@@ -152,6 +152,12 @@ def _drained(news: deque[tuple[Any, ...]]) -> list[tuple[Any, ...]]:
     return found
 
 
+def _expected(report: Any, call: pytest.CallInfo[None]) -> bool:
+    """Whether an exception ended the test as its mark xfail says; `pytest.xfail()` comes where a rejection was caught."""
+    ended = call.excinfo is not None and not call.excinfo.errisinstance(pytest.xfail.Exception)
+    return ended and hasattr(report, "wasxfail")
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) -> Generator[None, Any, Any]:
     """Attach the new verdicts to the report, as plain data that xdist can send, and in a word to junit.
@@ -167,7 +173,8 @@ def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) ->
             words = "; ".join(f"{v['check']}: {v['outcome']}, alpha {v['alpha']:.2g}" for v in own)
             item.user_properties.append(("fogproof", words))
         lost = [why for *_, why in found if why]
-        if lost and not report.failed and not hasattr(report, "wasxfail"):
+        if lost and not report.failed and not _expected(report, call):
+            vars(report).pop("wasxfail", None)
             fix = "if that is what you expect, call the package itself (import fogproof), and look at the verdict"
             report.outcome = "failed"
             report.longrepr = f"{'; '.join(lost)}, though the exception has not ended the test; {fix}"

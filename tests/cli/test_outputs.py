@@ -30,6 +30,16 @@ POSIX = pytest.mark.skipif(os.name != "posix", reason="needs a shell, signals an
 FOGPROOF = f"{shlex.quote(sys.executable)} -m fogproof"
 
 
+@POSIX
+def test_the_oracle_does_not_answer_its_answers(tmp_path):
+    (tmp_path / "f").write_text(f"{QUESTION}\n")
+    shell = {"shell": True, "cwd": tmp_path, "capture_output": True, "text": True}
+    ran = subprocess.run(f"ulimit -f 1000; {FOGPROOF} oracle - < f >> f", **shell)  # it would end when the file is full
+    assert (ran.returncode, "stdout is the file that stdin reads" in ran.stderr) == (2, True), ran.stderr
+    assert (tmp_path / "f").read_text() == f"{QUESTION}\n"
+    assert subprocess.run(f"{FOGPROOF} oracle - < f >> other", **shell).returncode == 0
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [

@@ -265,6 +265,19 @@ LOST = """
         except AssertionError:
             pytest.skip("flaky")
 
+    def test_xfailed(fogproof):
+        try:
+            reject(fogproof)
+        except AssertionError:
+            pytest.xfail("no")
+
+    @pytest.mark.xfail(raises=Exception)
+    def test_xpassed(fogproof):
+        try:
+            reject(fogproof)
+        except AssertionError:
+            pass
+
     def test_running(fogproof):
         begun = threading.Event()
         slow = lambda rng, n: (begun.set(), go.wait(60), rng.random(n))[-1]
@@ -293,6 +306,8 @@ def test_a_rejection_fails_its_test_whoever_catches_it(tmp_path):
         "test_thread": "FAILED",
         "test_caught": "FAILED",
         "test_skipped": "FAILED",
+        "test_xfailed": "FAILED",
+        "test_xpassed": "FAILED",
         "test_running": "PASSED ERROR",
         "test_expected": "XFAIL",
         "test_kept": "PASSED",
@@ -302,7 +317,7 @@ def test_a_rejection_fails_its_test_whoever_catches_it(tmp_path):
     assert "check_estimator still runs where test_running ends" in out.stdout
     assert "called by the fixture of test_mine.py::test_kept, which had ended" in out.stdout
     cases = json.loads((tmp_path / "report" / "results.json").read_text())["cases"]
-    assert [case["status"] for case in cases if "running" not in case["name"]] == ["rejected"] * 4
+    assert [case["status"] for case in cases if "running" not in case["name"]] == ["rejected"] * 6
 
 
 FORKS = """

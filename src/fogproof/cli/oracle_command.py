@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import json
 import math
+import os
+import stat
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import BinaryIO
 
 import click
 
@@ -97,7 +101,18 @@ def _image(scene_file: str, output: Path) -> int:
 
 def _stdin() -> Callable[[int], bytes]:
     stdin = requests_on_stdin()
+    if _answers_itself(stdin):
+        raise InvalidInputError(
+            "stdout is the file that stdin reads: answers would be questions; write to another", "-"
+        )
     return stdin.read1 if isinstance(stdin, io.BufferedReader) else stdin.read
+
+
+def _answers_itself(stdin: BinaryIO) -> bool:
+    with contextlib.suppress(OSError, ValueError):  # one of them is no file
+        read, written = os.fstat(stdin.fileno()), os.fstat(sys.stdout.fileno())
+        return stat.S_ISREG(read.st_mode) and os.path.samestat(read, written)
+    return False
 
 
 def _file(path: str) -> Callable[[int], bytes]:
