@@ -56,6 +56,21 @@ def context(preload: list[str]) -> Any:
     return made
 
 
+def let_go() -> None:
+    """Close what leads from a process that was forked to the server and to multiprocessing's watcher of semaphores.
+
+    Other people's code that writes into every file it finds open would write there. If it uses multiprocessing itself, it gets
+    a server and a watcher of its own.
+    """
+    server, watcher = multiprocessing.forkserver._forkserver, multiprocessing.resource_tracker._resource_tracker
+    for opened in (getattr(server, "_forkserver_alive_fd", None), getattr(watcher, "_fd", None)):
+        if opened is not None:
+            with contextlib.suppress(OSError):
+                os.close(opened)
+    vars(server).update(_forkserver_alive_fd=None, _forkserver_address=None, _forkserver_pid=None)
+    vars(watcher).update(_fd=None, _pid=None)
+
+
 def end() -> None:
     """End the server and all that it forked: one that still loads what takes long would let whoever asked it wait for that."""
     if os.name == "posix":

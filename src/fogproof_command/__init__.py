@@ -37,10 +37,12 @@ def prepare() -> None:
     """Listen to signals while modules are loaded, hear how children end, and mind the system's limits."""
     import signal  # here, where a file in its place can be named
 
-    for name in ("SIGINT", "SIGTERM", "SIGHUP", "SIGXCPU"):
-        number = getattr(signal, name, None)
-        if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
+    asking = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP", "SIGXCPU") if hasattr(signal, name)]
+    for number in asking:
+        if signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, _stop)
+    if hasattr(signal, "pthread_sigmask"):  # a parent may have left them blocked, as threads do that start programs
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, asking)
     child = getattr(signal, "SIGCHLD", None)
     if child is not None and signal.getsignal(child) is signal.SIG_IGN:
         signal.signal(

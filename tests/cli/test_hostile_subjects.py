@@ -222,6 +222,47 @@ def test_no_question_is_written_into_its_files(tmp_path, monkeypatch):
     assert not any(b"?" in file.read_bytes() for file in tmp_path.iterdir())
 
 
+WRITES = """
+import contextlib, os, time
+def writes():
+    for number in range(3, 64):
+        with contextlib.suppress(OSError):
+            os.write(number, b"\\n\\n\\n\\n\\n")
+def writes_and_never_returns():
+    writes()
+    time.sleep(600)
+"""
+
+
+@POSIX
+def test_a_subject_that_writes_into_every_file_it_finds(tmp_path):
+    """In a process of its own, whose files are nobody else's."""
+    (tmp_path / "subject.py").write_text(WRITES)
+    code = """if True:
+        from fogproof.checks import limits
+        from subject import writes, writes_and_never_returns
+        limits._REST = 0.2
+        for run in (
+            lambda: limits.isolated(writes),
+            lambda: limits.isolated(writes),
+            lambda: limits.within(60.0, writes),
+            lambda: limits.within(1.0, writes_and_never_returns),
+        ):
+            try:
+                run()
+            except Exception as error:
+                print(f"{type(error).__name__}: {error}")
+    """
+    there = {**os.environ, "PYTHONPATH": str(tmp_path)}
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=there, timeout=60)
+    told = done.stdout.splitlines()
+    assert len(told) == 4, done.stderr
+    assert all(line.startswith("SubjectError: the subject wrote into files that others had opened") for line in told), (
+        told
+    )
+    assert done.stderr.strip() == ""  # neither multiprocessing's server nor its watcher has read it
+
+
 @POSIX
 def test_main_in_a_callers_process_leaves_its_stdout_alone():
     code = textwrap.dedent("""

@@ -2,6 +2,8 @@
 
 import os
 import signal
+import subprocess
+import sys
 import time
 
 import pytest
@@ -111,6 +113,38 @@ def test_a_later_signal_ends_the_process_at_once(monkeypatch):
                 ask()
         os._exit(0)
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == -signal.SIGTERM
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_what_a_parent_has_blocked_is_heard(number):
+    """Masks outlive exec; programs that are started by a thread often have one."""
+    started = "import fogproof_command as c, os, time; c.prepare(); os.kill(os.getpid(), {}); time.sleep(5)"
+    blocked = {
+        "preexec_fn": lambda: signal.pthread_sigmask(signal.SIG_BLOCK, [number]),
+        "capture_output": True,
+    }
+    ran = subprocess.run([sys.executable, "-c", started.format(int(number))], **blocked)
+    assert (ran.returncode, ran.stderr) == (128 + number, b"fogproof: stopped\n")
+
+
+def test_a_time_limit_hears_its_alarm_though_it_is_blocked():
+    """In a process of one thread: any other would hear it."""
+    code = """if True:
+        import os, signal, time
+        from fogproof.errors import TimeLimitError
+        from fogproof.oracle.limits import within
+        signal.signal(signal.SIGALRM, lambda number, frame: None)
+        signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGALRM])
+        os.kill(os.getpid(), signal.SIGALRM)  # somebody else's, which waits
+        print(within(60.0, lambda: "answer"))
+        try:
+            within(0.05, lambda: time.sleep(3))
+        except TimeLimitError:
+            print("ended")
+        print(signal.SIGALRM in signal.pthread_sigmask(signal.SIG_BLOCK, []))
+    """
+    ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert ran.stdout.split() == ["answer", "ended", "True"], ran.stderr
 
 
 def test_a_formula_that_is_stopped_is_not_one_that_fails():

@@ -11,7 +11,7 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import Any, TypeVar
 
@@ -71,6 +71,9 @@ def end_isolated() -> None:
 _NAME = "fogproof subject"
 _TRIES = 3
 """A server of processes that is killed is started again so often for one subject."""
+_REST = 10.0
+"""Seconds beyond its limit that a subject has for the rest of an answer that it has begun."""
+_WROTE = "the subject wrote into files that others had opened (descriptors from 3 on); let it write into its own alone"
 _CLOSED = 74
 """The exit code of a process that cannot send its answer: EX_IOERR of sysexits.h."""
 
@@ -88,18 +91,19 @@ def _answer_of(context: Any, seconds: float | None, check: Callable[[], Answer])
     finally:
         theirs.close()
     try:
+        end = None if seconds is None else time.monotonic() + seconds
         if not ours.poll(seconds):
             raise SubjectError(f"the subject did not return within {seconds:g} s", "sample")
         try:
-            good, answer = ours.recv()
+            with _ended_after(None if end is None else end - time.monotonic(), child):
+                good, answer = ours.recv()
         except EOFError:
             child.join()
             raise SubjectError(_without_answer(child.exitcode), "sample") from None
+        except Exception:  # no message of ours, but bytes
+            raise SubjectError(_WROTE, "sample") from None
     finally:
-        if child.pid is not None:
-            with contextlib.suppress(OSError, AttributeError):  # with all that it started and left in its session
-                os.killpg(child.pid, signal.SIGKILL)
-        child.kill()
+        _end(child)
         child.join()
         ours.close()
     if good is None:
@@ -108,6 +112,29 @@ def _answer_of(context: Any, seconds: float | None, check: Callable[[], Answer])
         raise SubjectError(*answer)
     returned: Answer = answer
     return returned
+
+
+@contextlib.contextmanager
+def _ended_after(seconds: float | None, child: Any) -> Iterator[None]:
+    """End a process that has begun to answer, and does not come to the end of it in time."""
+    if seconds is None:
+        yield
+        return
+    timer = threading.Timer(max(seconds, 0.0) + _REST, _end, [child])
+    timer.daemon = True
+    with contextlib.suppress(RuntimeError):  # where no more threads may be started nothing watches
+        timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
+
+
+def _end(child: Any) -> None:
+    if child.pid is not None:
+        with contextlib.suppress(OSError, AttributeError):  # with all that it started and left in its session
+            os.killpg(child.pid, signal.SIGKILL)
+    child.kill()
 
 
 def _without_answer(code: int) -> str:
@@ -134,6 +161,7 @@ def _answer(check: Callable[[], object], pipe: multiprocessing.connection.Connec
                 os._exit(_CLOSED)
 
     parents.stand_between(partial(send, (False, (parents.KILLED, "sample"))))
+    servers.let_go()
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # nobody sends it: a KeyboardInterrupt is the subject's own
     parent = multiprocessing.parent_process()
     assert parent is not None

@@ -97,11 +97,12 @@ def within(seconds: float, work: Callable[[], Answer]) -> Answer:
     """Return work(), or raise `TimeLimitError` if it takes longer; without effect where the system has no alarm.
 
     The alarm may ring at any moment until the first line of `finally`, which no handler can come before: an assignment is no call.
+    A parent may have left the signal blocked: it is heard until the answer is there.
     """
     possible = hasattr(signal, "setitimer") and threading.current_thread() is threading.main_thread()
     if not possible or seconds > LONGEST:
         return work()
-    awaited = True
+    awaited = blocked = False
 
     def ring(_signal: int, frame: FrameType | None) -> None:
         if not awaited:
@@ -113,6 +114,8 @@ def within(seconds: float, work: Callable[[], Answer]) -> Answer:
 
     before = signal.signal(signal.SIGALRM, ring)
     try:
+        blocked = signal.SIGALRM in signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGALRM])
+        awaited = True  # one that had been waiting until now was not ours
         signal.setitimer(signal.ITIMER_REAL, seconds)
         return work()
     except _Alarm:
@@ -120,4 +123,6 @@ def within(seconds: float, work: Callable[[], Answer]) -> Answer:
     finally:
         awaited = False
         signal.setitimer(signal.ITIMER_REAL, 0)
+        if blocked:
+            signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGALRM])
         signal.signal(signal.SIGALRM, before)

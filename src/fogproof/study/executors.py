@@ -85,6 +85,7 @@ def _as_worker() -> None:
     A worker that outlives it would wait for work for ever, and keep open what its parent's output is read from.
     """
     parents.stand_between(lambda: None)
+    servers.let_go()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     multiprocessing.util.Finalize(None, _end_at_once, exitpriority=1000)  # before anybody is waited for
     parent = multiprocessing.parent_process()
