@@ -43,7 +43,7 @@ def test_verify_writes_a_report_and_exits_0(tmp_path):
     assert both.stdout.strip() == str(tmp_path / "report" / "comparison.html")
     assert "Every case came out as before" in (tmp_path / "report" / "comparison.html").read_text()
     record["cases"][0] |= {"status": "error", "verdict": None}
-    (tmp_path / "report" / "results.json").write_text(json.dumps(record))
+    (tmp_path / "report" / "results.json").write_text(json.dumps({**record, "exit_code": 1}))
     (tmp_path / "old").mkdir()
     (tmp_path / "old" / "results.json").write_text(json.dumps({**record, "cases": record["cases"][1:]}))
     assert fogproof("report", tmp_path / "report", "--against", tmp_path / "old").returncode == 1
