@@ -31,6 +31,8 @@ _PAGES = {
     ".png": re.compile(rb"tEXtSoftware\0fogproof"),
     ".svg": re.compile(rb"<!-- fogproof -->"),
 }
+_RECORD = re.compile(rb'\{\s*"(schema|format)":\s*"fogproof')
+"""How most records begin: one that was cut says still whose it is."""
 _PLAIN = "scene.json"
 """The end of names of records without a mark: renderers read them."""
 
@@ -39,20 +41,50 @@ def prepare_folder(folder: Path, names: tuple[str, ...] = REPORT, force: bool | 
     """Make `folder` and see that it can be written, and that no file of somebody else's is replaced.
 
     A page or picture is ours if it says so, a record if its `schema` (`format`) is one of ours. Of what bears no mark, such as a
-    table, the records beside it decide. Better to learn all that before a run than after it. What fails leaves no folder behind.
+    table, the records beside it decide. A file that is empty or all NUL, as a power cut leaves those that were just written, is
+    ours if anything beside it is. Better to learn all that before a run than after it. What fails leaves no folder behind.
 
     names  of the files that will be written there; a pattern stands for all that are there
     force  replace whatever is there; None where nobody can ask for that
     """
     records = [folder / name for name in names if name.endswith(".json") and not name.endswith(_PLAIN)]
-    for path in [] if force else _written(folder, names):
-        marked = path.suffix in _PAGES or path in records
-        if os.path.lexists(path) and not (_is_ours(path) if marked else any(map(_is_ours, records))):
+    there = [] if force else [path for path in _written(folder, names) if os.path.lexists(path)]
+    marked = [path for path in there if path.suffix in _PAGES or path in records]
+    ours = {path for path in marked if _is_ours(path)}
+    lost = {path for path in marked if ours and _is_blank(path)}
+    beside = ours if lost.intersection(records) else ours.intersection(records)
+    for path in there:
+        if path not in ours | lost and (path in marked or not beside):
             fix = "choose another folder" + ("" if force is None else ", or add --force to replace it")
             raise InvalidInputError(f"{path} was not written by fogproof; {fix}", str(path))
     probe = folder / f".probe.{os.getpid()}"
     write_file(probe, b"")
     probe.unlink(missing_ok=True)
+    _clear_unfinished(folder, names)
+
+
+def _clear_unfinished(folder: Path, names: Iterable[str]) -> None:
+    """Remove what killed processes left of files of these names: those under which `write_file` begins them."""
+    for name in map(Path, names):
+        for path in (folder / name.parent).glob(f".{name.name}.*"):
+            with contextlib.suppress(
+                OSError, ValueError
+            ):  # somebody removes it at the same time; no number of a process
+                if not _runs(int(path.suffix.removeprefix("."))):
+                    path.unlink()
+
+
+def _runs(process: int) -> bool:
+    """Whether a process is there, of whomever; where nobody can be asked it is."""
+    if os.name != "posix":
+        return True
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except (OSError, OverflowError):
+        return True
+    return True
 
 
 def _written(folder: Path, names: Iterable[str]) -> Iterator[Path]:
@@ -115,11 +147,22 @@ def _is_ours(path: Path) -> bool:
         if path.suffix in _PAGES:
             with path.open("rb") as page:
                 return _PAGES[path.suffix].search(page.read(_HEAD)) is not None
-        record = json.loads(path.read_bytes())
+        content = path.read_bytes()
+        if _RECORD.match(content):
+            return True
+        record = json.loads(content)
     except (OSError, ValueError, RecursionError):
         return False
     mark = record.get("schema", record.get("format")) if isinstance(record, dict) else None
     return isinstance(mark, str) and mark.startswith("fogproof")
+
+
+def _is_blank(path: Path) -> bool:
+    """Whether a file is empty, or holds NULs alone."""
+    try:
+        return path.is_file() and not path.read_bytes().strip(b"\0")
+    except OSError:
+        return False
 
 
 def require_other(output: str | Path, *sources: str | Path) -> None:

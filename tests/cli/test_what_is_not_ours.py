@@ -2,6 +2,8 @@
 
 import fcntl
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +13,7 @@ from fuzz_commands import Run, here
 from fogproof.errors import InvalidInputError
 from fogproof.reports.charts.p_values import PValueHistogram
 from fogproof.reports.charts.pictures import render
-from fogproof.reports.files import FIGURES, prepare_folder
+from fogproof.reports.files import FIGURES, prepare_folder, write_file
 
 ROOT = Path(__file__).resolve().parents[2]
 SUN = (ROOT / "scenes" / "images" / "sun.toml").read_text().replace("width = 48, height = 36", "width = 4, height = 4")
@@ -132,3 +134,43 @@ def test_what_fails_before_it_writes_leaves_no_folder(at):
         end = here(Run(words))
         assert end.code == 2, (words, end.err)
         assert not Path("new").exists(), words
+
+
+@pytest.mark.parametrize("left", [b"", b"\0" * 4096], ids=["empty", "nul"])
+@pytest.mark.parametrize("name", ["index.html", "results.json", "figures/one.png", "figures/one.svg"])
+def test_what_a_power_cut_left_of_our_own_is_ours(tmp_path, name, left):
+    ours = {
+        "index.html": "<title>A run – fogproof verify</title>".encode(),
+        "results.json": b'{"schema": "fogproof-run-1"}',
+        "results.csv": b"a,b",
+        "figures/one.png": b"tEXtSoftware\0fogproof",
+        "figures/one.svg": b"<!-- fogproof -->",
+    }
+    for path, content in ours.items():
+        write_file(tmp_path / path, left if path == name else content)
+    prepare_folder(tmp_path)
+    for path in ours:
+        if path != name:
+            (tmp_path / path).unlink()
+    with pytest.raises(InvalidInputError, match="was not written by fogproof"):  # nothing here says whose it is
+        prepare_folder(tmp_path)
+
+
+def test_a_record_that_was_cut_says_whose_it_is(tmp_path):
+    write_file(tmp_path / "results.json", '{\n "schema": "fogproof-run-1",\n "ca')
+    prepare_folder(tmp_path)
+    write_file(tmp_path / "results.json", '{\n "schema": "somebody-1",\n "ca')
+    with pytest.raises(InvalidInputError, match="was not written by fogproof"):
+        prepare_folder(tmp_path)
+
+
+def test_what_killed_processes_had_begun_is_cleared(tmp_path):
+    ended = subprocess.Popen([sys.executable, "-c", ""])
+    ended.wait()
+    for name in (".image.png", ".index.html", ".notes.txt"):
+        for process in (ended.pid, os.getpid(), "old"):
+            write_file(tmp_path / ("figures" if name == ".image.png" else "") / f"{name}.{process}", b"half")
+    prepare_folder(tmp_path)
+    left = {path.name for path in tmp_path.rglob(f".*.{ended.pid}")}
+    assert left == {f".notes.txt.{ended.pid}"}  # no name of ours
+    assert len([*tmp_path.rglob(f".*.{os.getpid()}"), *tmp_path.rglob(".*.old")]) == 6
