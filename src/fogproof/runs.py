@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import contextlib
 import datetime
 import functools
 import importlib.metadata
+import json
+import os
 import shlex
 import sys
+import tempfile
 import time
+import weakref
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
@@ -42,6 +47,10 @@ class Run:
         self._started, self._clock = datetime.datetime.now(datetime.UTC), time.perf_counter()
         self._cases: dict[str, dict[str, Any]] = {}
         self._beside = 0.0  # alphas of verdicts that took none of the run's
+        self._process, self._forks = os.getpid(), _file_for_forks(self)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**vars(self), "_forks": None}  # a copy elsewhere is no fork
 
     def check(self, name: str, check: Callable[..., Verdict], *arguments: Any, **options: Any) -> Verdict:
         """Call a check of fogproof's, such as `check_sampler`, and keep the verdict.
@@ -68,10 +77,10 @@ class Run:
                 )
         except Exception as error:
             reason = f"{type(error).__name__}: {error}"
-            self._cases[name] = case_record(name, None, title=title, status="error", reason=reason)
+            self._keep(name, case_record(name, None, title=title, status="error", reason=reason))
             raise
         seconds = time.perf_counter() - clock
-        self._cases[name] = case_record(name, verdict.to_dict(), title=title, seconds=seconds)
+        self._keep(name, case_record(name, verdict.to_dict(), title=title, seconds=seconds))
         if "alpha" not in shared_among(check, shared):
             self._beside += verdict.alpha
         return verdict
@@ -89,17 +98,33 @@ class Run:
             raise InvalidValueError("name", "must be a string", name)
         if self._cases.setdefault(name, case) is not case:
             raise InvalidValueError("name", "must be new in the run", name)
+        self._keep(name, case)
         return list(self._cases).index(name) + 1
+
+    def _keep(self, name: str, case: dict[str, Any]) -> None:
+        """Keep a case; a forked process also leaves it in a file that it and the run's own have open."""
+        self._cases[name] = case
+        if self._forks is not None and self._process != os.getpid():
+            os.write(self._forks, json.dumps([os.getpid(), name, jsonable(case)]).encode() + b"\n")
+
+    def _all(self) -> list[dict[str, Any]]:
+        """Return the cases of this process, and those of the processes that were forked from it."""
+        cases = dict[Any, dict[str, Any]](self._cases)
+        if self._forks is not None and self._process == os.getpid():
+            for line in os.pread(self._forks, os.fstat(self._forks).st_size, 0).splitlines():
+                process, name, case = json.loads(line)
+                cases[process, name] = {**case, "name": f"{name} (process {process})" if name in self._cases else name}
+        return list(cases.values())
 
     @property
     def exit_code(self) -> int:
         """0 if nothing was rejected, 1 if something was or could not be judged, 3 if something is only inconclusive."""
-        return _exit_code(self._cases.values())
+        return _exit_code(self._all())
 
     def record(self) -> dict[str, Any]:
         """Return the JSON-ready record of the run."""
         return run_record(
-            list(self._cases.values()),
+            self._all(),
             kind="run",
             seed=self.seed,
             alpha=self.alpha + self._beside,
@@ -114,6 +139,16 @@ class Run:
 
         prepare_folder(Path(folder))
         return write_report(self.record(), folder)
+
+
+def _file_for_forks(run: Run) -> int | None:
+    """Return a descriptor for what forked processes find, None where nothing forks or there is no place for one."""
+    if hasattr(os, "fork"):
+        with contextlib.suppress(OSError), tempfile.TemporaryFile() as file:
+            number = os.dup(file.fileno())
+            weakref.finalize(run, os.close, number)
+            return number
+    return None
 
 
 def _name_of(check: Callable[..., Verdict]) -> str:

@@ -1,6 +1,7 @@
 """Checks collected in a run: every check that fogproof has may be among them, and they share one false-alarm probability."""
 
 import functools
+import os
 import threading
 from concurrent.futures import ThreadPoolExecutor
 
@@ -103,3 +104,24 @@ def test_an_interrupted_check_is_not_judged(interruptible):
 def test_wrong_arguments_are_explained(wrong, word):
     with pytest.raises(InvalidValueError, match=word):
         wrong()
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs a system that can fork")
+def test_a_rejection_in_a_forked_process_is_the_runs():
+    run = fogproof.Run(seed=1)
+    child = os.fork()
+    if not child:
+        try:
+            run.check(
+                "wrong",
+                fogproof.check_sampler,
+                lambda u: -np.log1p(-u[:, 0]),
+                lambda t: np.exp(-t) / 2,
+                fogproof.HalfLine(0.0),
+                dimensions=1,
+            )
+        finally:
+            os._exit(0)
+    os.waitpid(child, 0)
+    assert run.exit_code == 1
+    assert [(case["name"], case["status"]) for case in run.record()["cases"]] == [("wrong", "rejected")]
