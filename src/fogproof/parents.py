@@ -78,6 +78,7 @@ def confirm() -> None:
         if parent is not None and _identity(parent.questions) == parent.pipe:  # the subject may have closed it
             with contextlib.suppress(BrokenPipeError):  # it has ended: so will we
                 os.write(parent.questions, b"?")
+            os.kill(os.getppid(), signal.SIGCONT)  # a subject may have stopped it: it would neither answer nor end
             parent.answered.acquire(timeout=_PATIENCE)
 
 

@@ -193,6 +193,11 @@ def stops_its_parent():
     return 3
 
 
+def leaves_its_parent_stopped():
+    os.kill(os.getppid(), signal.SIGSTOP)
+    return 3
+
+
 def closes_and_opens_files():
     os.closerange(3, 4096)  # a test runner may have many open
     for number in range(32):
@@ -205,6 +210,7 @@ def test_the_last_thing_it_does_is_seen(run):
     with pytest.raises(SubjectError, match=KILLED):
         run(kills_its_parent)
     assert run(stops_its_parent) == 3
+    assert run(leaves_its_parent_stopped) == 3
 
 
 @POSIX
