@@ -72,7 +72,6 @@ def test_a_report_of_ours_is_replaced_and_each_file_is_looked_at(tmp_path):
     for name in REPORT[:2]:
         ours = (tmp_path / name).read_bytes()
         for theirs in (
-            b"",
             b"fogproof",
             b"<title>My notes on fogproof</title>",
             b'["fogproof"]',
