@@ -39,8 +39,10 @@ from fogproof.errors import InvalidValueError
 _MOST_ENTRIES = 1 << 22  # of a table that is summed over
 _STEPS = 2.0  # of declared uniforms of few bits: a sample is made of one or two that matter
 _PRECISION_POINTS = 4096
-Count = Callable[[np.ndarray], tuple[np.ndarray, ...]]
 _CANCELLED = 4.0  # units in the last place of an axis that single precision may lose
+
+Count = Callable[[np.ndarray], tuple[np.ndarray, ...]]
+"""Points (n, ...) to the coordinates (n,) in which they are counted."""
 
 
 def prepare(subject: Subject, samples: int, seed: int) -> Prepared:

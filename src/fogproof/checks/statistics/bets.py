@@ -110,9 +110,8 @@ def _stakes(above: np.ndarray, claim: float) -> np.ndarray:
     """Return the gains of bets that numbers >= 0 have a larger mean than claimed."""
     if claim <= 0:
         return np.full(len(_STAKES), math.inf if np.max(above) > 0 else 0.0)
-    ratio = (
-        np.maximum(above, 0.0) / claim - 1
-    )  # what lies below its bound breaks the declaration: another finding says so
+    # what lies below its bound breaks the declaration: another finding says so
+    ratio = np.maximum(above, 0.0) / claim - 1
     return np.array([float(np.sum(np.log1p(stake * ratio))) for stake in _STAKES])
 
 
