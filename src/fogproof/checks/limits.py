@@ -79,12 +79,12 @@ class IsolatedProcess:
     """
 
     def __init__(self, context: Any, work: Callable[..., None], *arguments: Any) -> None:
-        self._told, theirs = context.Pipe(duplex=False)
+        self._pipe, theirs = context.Pipe(duplex=False)
         self._process = context.Process(target=_begin, args=(theirs, work, *arguments), name=_NAME, daemon=True)
         try:
             self._process.start()
         except (EOFError, OSError) as error:  # EOFError: the server of processes could start none, and ended
-            self._told.close()
+            self._pipe.close()
             if isinstance(error, ConnectionError):  # it was killed a moment ago
                 raise
             raise _no_process(error) from None
@@ -94,13 +94,13 @@ class IsolatedProcess:
     def answer(self, seconds: float | None = None) -> Any:
         """Return the next answer; raise `SubjectError` if the process ends without one, or takes longer than `seconds`."""
         last = math.inf if seconds is None else time.monotonic() + seconds
-        while not self._told.poll(max(min(_AGAIN, last - time.monotonic()), 0.0)):
+        while not self._pipe.poll(max(min(_AGAIN, last - time.monotonic()), 0.0)):
             if time.monotonic() >= last:
                 raise SubjectError(f"the subject did not return within {seconds:g} s", "sample")
             with contextlib.suppress(OSError, AttributeError):
                 os.kill(self._process.pid, signal.SIGCONT)
         try:
-            what, said = self._told.recv()
+            what, said = self._pipe.recv()
         except (EOFError, OSError):  # the process between has ended without a word
             raise SubjectError(self._without_a_word(), "sample") from None
         if what == SAID:
@@ -118,7 +118,7 @@ class IsolatedProcess:
         """Kill it, and wait until it has ended."""
         self.kill()
         self._process.join()
-        self._told.close()
+        self._pipe.close()
 
     def _without_a_word(self) -> str:
         self._process.join()
