@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from scipy import stats
+from scipy.signal import lfilter
 from study_levels import COUNTS, MEAN, Law, cell, level
 
 from fogproof.checks.statistics.tails import binomial_at_least
@@ -45,6 +46,19 @@ DEPENDENT = {
     "a factor in common": lambda rng, shape: rng.exponential(size=shape) * np.exp(0.5 * rng.normal(size=(shape[0], 1)) - 0.125) - 1,
     "sixteen alike": lambda rng, shape: np.repeat(rng.normal(size=(shape[0], shape[1] // 16)), 16, axis=1),
 }  # fmt: skip
+
+
+def neighbours(correlation):
+    """Return a law of unit variance whose neighbours are so correlated: means vary (1 + r) / (1 - r) times as much."""
+
+    def draw(rng, shape):
+        x = math.sqrt(1 - correlation**2) * rng.normal(size=shape)
+        x[:, 0] = rng.normal(size=shape[0])
+        return lfilter([1], [1, -correlation], x, axis=1)
+
+    return draw
+
+
 STRATIFIED = {
     "antithetic pairs": each(folded),
     "strata": each(lambda rng, n: (np.arange(n) + rng.random(n)) / n - 0.5),
@@ -106,6 +120,46 @@ def test_the_interval_of_the_bias_is_that_of_replicates(monkeypatch, law):
     assert len(told) > 0.9 * tries
     assert binomial_at_least(missed, len(told), 0.06 if "skewed" in law or "factor" in law else 0.012) > 1e-6, missed
     assert all(one["variance"] is None for one in found if one["calls"] in ("dependent", "stratified"))
+
+
+def test_correlation_too_weak_to_be_told_leaves_intervals_that_hold(monkeypatch):
+    """Neighbours correlated by 0.3: the intervals of independent realisations miss 6 %."""
+    monkeypatch.setitem(methods.METHODS, "law", Law)
+    rng, tries, law = np.random.default_rng(), 300, neighbours(0.3)
+    found = [measure(cell(), levels(law, rng, (64, 512), 16), ALPHA).record for _ in range(tries)]
+    told = [one for one in found if one["calls"] in ("independent", "doubtful")]
+    missed = sum(not one["bias"]["low"] <= 0 <= one["bias"]["high"] for one in told)
+    assert len(told) > 0.95 * tries
+    assert binomial_at_least(missed, len(told), 0.018) > 1e-4, missed
+    for one in told:
+        interval, bias = one["findings"][0].interval, one["bias"]
+        ends = bias["low"], bias["high"]
+        assert (interval.low, interval.high) == pytest.approx(ends, abs=0.01 * (ends[1] - ends[0]))
+
+
+def test_a_resolution_grows_with_what_means_scatter():
+    """Numbers of which each is there twice: means vary twice as much, and a bias must be larger to be found as surely."""
+    rng = np.random.default_rng()
+    ratio = []
+    for _ in range(40):
+        x = [rng.normal(size=(8, n)) for n in COUNTS]
+        twice = [np.concatenate([y[:, : y.shape[1] // 2]] * 2, axis=1) for y in x]
+        alone, both = (judge(cell(), [level(MEAN + y) for y in some], None, ALPHA) for some in (x, twice))
+        ratio.append(both.findings[0].resolution.value / alone.findings[0].resolution.value)
+    assert np.median(ratio) > 1.15
+
+
+def test_calls_that_may_be_stratified_are_told_so_and_judged_as_independent():
+    """Antithetic pairs, few replicates: their means are too even for one cell in a hundred, if not for the study's alpha."""
+    rng = np.random.default_rng()
+    for _ in range(40):
+        x = [np.stack([np.exp(folded(rng, n)) for _ in range(6)]) - 2 * math.sinh(0.5) for n in COUNTS]
+        judged = judge(cell(), [level(MEAN + y) for y in x], None, 1e-20)
+        assert (judged.calls, judged.outcome) == ("independent", "not rejected")
+        interval, data = judged.findings[0].interval, np.concatenate([y.ravel() for y in x])
+        reach = stats.norm.ppf(0.995) * data.std() / math.sqrt(data.size)
+        assert (interval.high - interval.low) / 2 == pytest.approx(reach, rel=1e-2)
+        assert "may be stratified" in judged.findings[-1].message
 
 
 def test_as_many_hits_in_each_call_are_no_strata_if_chance_makes_them():

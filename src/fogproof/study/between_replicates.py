@@ -5,7 +5,8 @@ has a Beta law, as in Fisher's analysis of variance, as far as means of calls ar
 call keeps to Bennett's inequality (1962), which holds of draws without replacement from any values (Hoeffding 1963).
 
 Means that scatter more come of realisations that share something. Less comes of strata or antithetic pairs: such an estimate is
-right, and more exact than the variance of one realisation says; what is said of it must come from the means alone.
+right, and more exact than the variance of one realisation says; what is said of it must come from the means alone. What is too weak
+to be told either way makes intervals and resolutions as much wider as means scatter, never narrower.
 """
 
 from __future__ import annotations
@@ -35,10 +36,12 @@ class BetweenReplicates:
     calls    "independent" as far as was seen; "doubtful": means scatter more than by chance in one cell of a hundred, if not
              beyond doubt; "dependent": more than chance explains; "stratified": less
     finding  says so; None where there is nothing to see
+    design_effect  how many times as much as independent realisations the mean varies, over all counts; 1 at least (Kish 1965)
     """
 
     calls: Calls
     finding: Finding | None = None
+    design_effect: float = 1.0
 
     @property
     def by_replicates(self) -> bool:
@@ -140,8 +143,10 @@ def between_replicates(levels: Sequence[Level], alpha: float) -> BetweenReplicat
         calls = "dependent" if more < less else "stratified"
     elif nominal <= DOUBT:
         calls = "doubtful"
-    shown = min(whole, key=lambda s: s.ratio) if calls == "stratified" else max(whole, key=lambda s: s.ratio)
-    return BetweenReplicates(calls, _finding(calls, shown.ratio, p, alpha, 2 * nominal <= alpha))
+    even = calls == "independent" and looks * min(s.less() for s in whole) <= DOUBT
+    shown = (min if even or calls == "stratified" else max)(whole, key=lambda s: s.ratio)
+    finding = _finding(calls, shown.ratio, p, alpha, 2 * nominal <= alpha, even)
+    return BetweenReplicates(calls, finding, max(1.0, whole[-1].ratio))
 
 
 def _with_their_sum(some: list[_Squares]) -> list[_Squares]:
@@ -154,11 +159,12 @@ def _with_their_sum(some: list[_Squares]) -> list[_Squares]:
     return [*some, _Squares(between, within, freedom, rounded, min(s.count for s in some), skewness, excess)]
 
 
-def _finding(calls: Calls, ratio: float, p: float, alpha: float, sure: bool) -> Finding:
+def _finding(calls: Calls, ratio: float, p: float, alpha: float, sure: bool, even: bool) -> Finding:
     told = {
         "dependent": "; realisations of one call depend on each other",
         "doubtful": "; whether realisations of one call depend on each other their law does not tell" if sure else "",
         "stratified": "; a call is stratified, and judged by its mean alone",
+        "independent": "; a call may be stratified, and its mean nearer than is stated" if even else "",
     }
     message = (
         f"means of replicates vary {ratio:.3g} times as much as those of independent realisations{told.get(calls, '')}"

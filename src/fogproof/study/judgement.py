@@ -45,6 +45,7 @@ class Judged:
     lacks    what an open judgement lacks: "samples", too few of whatever law; "law": samples for so skewed values; "resolution": an
              error as large as the reference would not have been seen; "calls": calls, to tell whether their realisations are
              independent; "range": numbers that binary64 has powers of; "" else
+    design_effect  how many times as much the mean varies as that of independent realisations, as far as calls are taken as such
     """
 
     outcome: Outcome
@@ -53,6 +54,7 @@ class Judged:
     times_as_many: float = 1.0
     calls: Calls = "independent"
     lacks: Lack = ""
+    design_effect: float = 1.0
 
     @property
     def wrong(self) -> frozenset[str]:
@@ -94,7 +96,7 @@ def judge(cell: Cell, levels: Sequence[Level], variance: Reference | None, alpha
     bad = sum(level.bad for level in levels)
     findings: list[Finding] = []
     warning, times_as_many = "", 1.0
-    calls: Calls = "independent"
+    between = BetweenReplicates("independent")
     lacks: Lack = ""
     if bad:
         findings.append(
@@ -115,20 +117,20 @@ def judge(cell: Cell, levels: Sequence[Level], variance: Reference | None, alpha
         between = between_replicates(levels, alpha)
         mean = mean_test("mean", "mean", data, value, error, alpha, known=known)
         mean = as_calls_allow(mean, between, _by_replicates(levels[-1], value, error, alpha))
-        coarse = _coarse(mean, value)
+        # Right calls are in doubt once in a hundred cells: that alone leaves none open.
+        coarse = _coarse(mean, value) if between.calls != "doubtful" else None
         findings.append(coarse or mean)
         if data.low < known.low or data.high > known.high:
             told = f"realisations reach from {data.low:.6g} to {data.high:.6g}, declared are {known.low:g} to {known.high:g}"
             findings.append(Finding("bounds", "rejected", told, cause="contract"))
         findings += _against_theory(levels, variance, alpha, known, value, between)
         findings += [between.finding] if between.finding else []
-        calls = between.calls
         warning = _heavy(levels, data, value)
         if warning and variance is None and "infinite" in warning:
             findings[0] = replace(findings[0], outcome="inconclusive", message=f"{findings[0].message}; {warning}")
         elif coarse:
             lacks, times_as_many = "resolution", _finer(mean, value)
-        elif calls == "doubtful" and "inconclusive" in (mean.outcome, findings[-1].outcome):
+        elif between.calls == "doubtful" and "inconclusive" in (mean.outcome, findings[-1].outcome):
             lacks, times_as_many = "calls", 4.0
         elif mean.outcome == "inconclusive":
             lacks, times_as_many = "samples" if data.n < LEAST else "law", _wanted(data, alpha)
@@ -136,7 +138,7 @@ def judge(cell: Cell, levels: Sequence[Level], variance: Reference | None, alpha
         findings.append(Finding("completeness", "inconclusive", "batches are missing"))
     outcomes = [f.outcome for f in findings if f.outcome == "rejected" or f.check != "variance"]
     outcome: Outcome = next((o for o in ("rejected", "inconclusive") if o in outcomes), "not rejected")
-    return Judged(outcome, tuple(findings), warning, times_as_many, calls, lacks)
+    return Judged(outcome, tuple(findings), warning, times_as_many, between.calls, lacks, between.design_effect)
 
 
 def _known(cell: Cell, variance: Reference | None, alike: bool) -> Known:

@@ -78,7 +78,7 @@ def measure(
     calls = judged.calls
     errors, times = [_rmse(cell, level, data, error, calls) for level in levels], times_of(levels)
     order, floor = _fall(cell, levels, errors, data, value, error, calls)
-    bias = _bias(cell, levels, data, error, calls)
+    bias = _bias(cell, levels, data, error, judged)
     stays = stays_for_good(cell, judged, bias, floor, levels, data)
     if order is not None and floor is None and stays > _LEVEL * errors[-1].value:
         order = None  # it falls to its bias, and no further
@@ -167,7 +167,7 @@ def _expected_order(cell: Cell) -> float | None:
     return 0.5 if cell.method.axis == "samples" and cell.points == "random" else None
 
 
-def _bias(cell: Cell, levels: Sequence[Level], data: Moments, error: float, calls: Calls) -> Estimate | None:
+def _bias(cell: Cell, levels: Sequence[Level], data: Moments, error: float, judged: Judged) -> Estimate | None:
     """Return the mean less the reference: of all realisations if these are independent, else of the largest count's replicates."""
     if not levels or any(level.bad for level in levels):
         return None
@@ -177,9 +177,10 @@ def _bias(cell: Cell, levels: Sequence[Level], data: Moments, error: float, call
         one = len(means) < 2  # one alone says nothing of its scatter
         stderr = math.nan if one else float(means.std(ddof=1)) / math.sqrt(len(means))
         reach = math.nan if one else student_quantile(len(means) - 1, (1 - CONFIDENCE) / 2) * stderr
-        if cell.points == "random" and calls in ("independent", "doubtful"):
+        if cell.points == "random" and judged.calls in ("independent", "doubtful"):
             off = data.mean - value
-            reach = max(Z * data.stderr, reach if calls == "doubtful" else 0.0)
+            own = Z * math.sqrt(judged.design_effect) * data.stderr
+            reach = max(own, reach) if judged.calls == "doubtful" else own
     return Estimate(off, off - reach - error, off + reach + error)
 
 

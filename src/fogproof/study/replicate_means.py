@@ -83,14 +83,39 @@ def _found(freedom: int, alpha: float) -> float:
 def as_calls_allow(found: Finding, between: BetweenReplicates, own: Finding) -> Finding:
     """Return what may be said of a mean of realisations: `found` takes them as independent, `own` is judged by replicates.
 
-    Where calls are in doubt, what is rejected must be so both ways, which spends no more than either.
+    Where calls are in doubt, what is rejected must be so both ways, which spends no more than either, and what is said
+    holds both ways.
     """
     if between.by_replicates:
         unseen = own.interval is None and found.outcome != "not rejected" and own.outcome == "not rejected"
         return replace(own, outcome="inconclusive", p_value=None) if unseen else own
-    if between.calls == "independent" or found.outcome != "rejected":
+    found = _widened(found, math.sqrt(between.design_effect))
+    if between.calls == "independent":
         return found
+    if found.outcome != "rejected":
+        return _wider(found, own)
     if own.outcome == "rejected":
         return own
     message = f"{own.message}; realisations of one call may depend on each other: ask for more replicates"
     return replace(own, outcome="inconclusive", message=message, p_value=None)
+
+
+def _widened(found: Finding, factor: float) -> Finding:
+    """Return the finding, its interval and resolution so many times as wide."""
+    if factor == 1 or found.interval is None or found.effect is None:
+        return found
+    low, high = (found.effect + factor * (end - found.effect) for end in (found.interval.low, found.interval.high))
+    resolution = found.resolution and replace(found.resolution, value=factor * found.resolution.value)
+    return replace(found, interval=replace(found.interval, low=low, high=high), resolution=resolution)
+
+
+def _wider(found: Finding, own: Finding) -> Finding:
+    """Return the finding, its interval and resolution as wide as its own and that of replicates."""
+    if found.interval is not None and own.interval is not None and found.effect is not None and own.effect is not None:
+        low = min(found.interval.low, found.effect + own.interval.low - own.effect)
+        high = max(found.interval.high, found.effect + own.interval.high - own.effect)
+        found = replace(found, interval=replace(found.interval, low=low, high=high))
+    if found.resolution is not None and own.resolution is not None:
+        value = max(found.resolution.value, own.resolution.value)
+        found = replace(found, resolution=replace(found.resolution, value=value))
+    return found
