@@ -62,11 +62,10 @@ def _student(x: np.ndarray, logarithm: np.ndarray) -> Iterator[Hypothesis]:
     found = least_squares(lambda v: law(v) - logarithm, start, max_nfev=100).x
     freedom, scale, center = float(np.exp(found[0])), unit * float(np.exp(found[1])), middle + unit * float(found[2])
     if _told(law(found), logarithm) and freedom < _MOST:
-        own = lambda x, nu: (1 + ((x - center) / scale) ** 2 / nu) ** (-0.5 * (nu + 1))  # noqa: E731
         yield Hypothesis(
             "another parameter",
             f"these samples fit Student's law with {{value}} degrees of freedom; the pdf's are {freedom:.4g}",
-            lambda s, nu: lambda x: own(x, nu),
+            lambda s, nu: lambda x: (1 + ((x - center) / scale) ** 2 / nu) ** (-0.5 * (nu + 1)),
             tuple(freedom * f for f in _FACTORS),
             null=freedom,
         )
