@@ -159,7 +159,7 @@ def test_the_cause_is(name):
 
 def test_a_broader_normal_law_is_no_logarithm():
     """Its variance of 1.44 is near to 1 / ln 2."""
-    verdict = check_sampler(lambda u: 1.2 * normal(u), bell, RealLine(), dimensions=1, samples=N)
+    verdict = check_sampler(lambda u: 1.2 * normal(u), bell, RealLine(), dimensions=1, samples=150_000)
     assert verdict.cause == "wrong scale", str(verdict)
     assert "logarithm" not in verdict.diagnosis, verdict.diagnosis
 
