@@ -34,7 +34,7 @@ def _gamma(x: np.ndarray, logarithm: np.ndarray, origin: float) -> Iterator[Hypo
     columns = np.column_stack([np.ones(len(x)), np.log(x), x / x.mean()])
     found = np.linalg.lstsq(columns, logarithm, rcond=None)[0]
     shape = float(found[1]) + 1
-    if _told(columns @ found, logarithm) and 0 < shape < _MOST:
+    if _follows(columns @ found, logarithm) and 0 < shape < _MOST:
         yield Hypothesis(
             "another parameter",
             f"these samples fit the gamma law with the shape {{value}}, half the degrees of freedom of a chi-square law; "
@@ -61,7 +61,7 @@ def _student(x: np.ndarray, logarithm: np.ndarray) -> Iterator[Hypothesis]:
     start = np.array([1.0, -0.5, 0.0, float(logarithm.max())])
     found = least_squares(lambda v: law(v) - logarithm, start, max_nfev=100).x
     freedom, scale, center = float(np.exp(found[0])), unit * float(np.exp(found[1])), middle + unit * float(found[2])
-    if _told(law(found), logarithm) and freedom < _MOST:
+    if _follows(law(found), logarithm) and freedom < _MOST:
         yield Hypothesis(
             "another parameter",
             f"these samples fit Student's law with {{value}} degrees of freedom; the pdf's are {freedom:.4g}",
@@ -71,5 +71,5 @@ def _student(x: np.ndarray, logarithm: np.ndarray) -> Iterator[Hypothesis]:
         )
 
 
-def _told(law: np.ndarray, logarithm: np.ndarray) -> bool:
+def _follows(law: np.ndarray, logarithm: np.ndarray) -> bool:
     return float(np.var(logarithm - law)) <= _LEFT * float(np.var(logarithm))
