@@ -110,7 +110,7 @@ CASES = {  # sampler, pdf, domain, dimensions; the cause and words of what expla
         "0.5",
     ),
     "a correlation that should not be": (
-        (pairs([[1, 0.1], [0.1, 4]]), bell_of([[1, 0], [0, 4]]), PAIRS, None),
+        (pairs([[1, 0.3], [0.3, 4]]), bell_of([[1, 0], [0, 4]]), PAIRS, None),
         "correlation",
         "the pdf's is",
     ),
