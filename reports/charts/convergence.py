@@ -24,7 +24,7 @@ _LETTERS = 28
 _SIDE = 258.0
 _NAMED = 6
 """Curves that keep their colour and name in a crowd: more colours than these nobody tells apart."""
-_CROWD = 9
+_CROWD = 13
 """So many curves are one."""
 
 

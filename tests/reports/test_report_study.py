@@ -220,6 +220,17 @@ def test_errors_of_many_magnitudes_stay_inside_the_figure():
     assert "Below" not in render(Convergence("samples", "error", (higher,), 0.99), "c", (560, 400)).words
 
 
+def test_a_bound_of_a_speed_stays_on_its_line(tmp_path):
+    """Narrow columns, as on paper, break words anywhere."""
+    told = study()
+    bounds = [{"value": 0.5, "low": 0.0, "high": 0.00827}, {"value": 0.5, "low": 0.0762, "high": 1e301}]
+    for entry_of, bound in zip(told["scenes"][0]["estimators"][1:], bounds, strict=False):
+        entry_of["speed"]["relative"] = bound
+    html = Page(write_report(told, tmp_path)).html
+    for text in ("&lt; 0.00827", "&gt; 0.0762"):
+        assert f'<span class="yes">{text}</span>' in html
+
+
 def test_in_a_crowd_the_best_keep_their_names_and_colours_and_the_rest_are_grey():
     """Curves of twenty estimators, the third the best for its time though others end lower."""
     effort, unknown = (1.0, 10.0, 100.0), (float("nan"),) * 3
@@ -235,8 +246,8 @@ def test_in_a_crowd_the_best_keep_their_names_and_colours_and_the_rest_are_grey(
     assert named in ({0, 1, 2, 3, 4, 5}, {1, 2, 3, 4, 5, 6})
     assert "The 14 others are grey." in picture.words
     assert picture.svg.count('opacity="0.12"') == 6
-    few = render(Convergence("time [s]", "error", curves[:8], 0.99), "c", (700, 400))
-    assert all(f">estimator {k}<" in few.svg for k in range(8))
+    few = render(Convergence("time [s]", "error", curves[:12], 0.99), "c", (700, 400))
+    assert all(f">estimator {k}<" in few.svg for k in range(12))
     assert "grey" not in few.words
 
 

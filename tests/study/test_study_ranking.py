@@ -165,3 +165,11 @@ def test_those_that_are_not_named_are_counted():
         said
         == "To 1 % n0 is 10 times as fast as n1, 100 times as fast as n2, 1 000 times as fast as n3 and more than that of 3 others."
     )
+
+
+def test_what_rounds_to_once_as_fast_is_not_said():
+    """That the second takes 1.03 times as long is sure, and no news."""
+    wobble = np.linspace(1, 1.001, ROUNDS)
+    scene = [Timed(f"n{k}", seconds * wobble) for k, seconds in enumerate((1.0, 1.03, 2.0))]
+    assert ranked(scene)["notes"] == ["To 1 % n0 is 2 times as fast as n2."]
+    assert ranked(scene[:2])["notes"] == []

@@ -174,8 +174,9 @@ def _compared(scene: Sequence[Measured], sure: float) -> list[str]:
         ratio = other.reaches[_AT].relative_to(first.reaches[_AT], sure)
         if ratio is not None and ratio.low > 1:
             most = first.reaches[_AT].how == "less-than"
-            times = f"at least {_plain(ratio.low)}" if most else _plain(ratio.value)
-            said.append(f"{times} times as fast as {_inside(other)}")
+            times = _plain(ratio.low if most else ratio.value)
+            if times != "1":
+                said.append(f"{'at least ' if most else ''}{times} times as fast as {_inside(other)}")
     more = len(said) - _SHOWN
     shown = said if more <= 1 else [*said[:_SHOWN], f"more than that of {more} others"]
     return [f"To {_percent(TARGETS[_AT])} {_inside(first)} is {_listed(shown)}."] if said else []
