@@ -19,6 +19,8 @@ _MARKERS: tuple[Marker, ...] = ("dot", "square", "triangle", "diamond", "cross")
 _DOTTED = (2.0, 3.0)
 _LOWEST = 3e-6
 """Relative errors below are nobody's question, and would flatten all others; their curves leave the picture."""
+_DEPTH = 1e3
+"""How far below the largest error a picture shows in any case."""
 _LETTERS = 28
 """In a line of a curve's name."""
 _SIDE = 258.0
@@ -85,7 +87,7 @@ class Convergence:
         """Draw each curve with its confidence band and name, the oracle's prediction dotted, and a line of the expected slope."""
         across = spanning(np.concatenate([np.array(c.effort) for c in self.curves]), log=True)
         every = np.concatenate([np.array(c.error) for c in self.curves])
-        up = spanning(np.maximum(every, min(_LOWEST, every.max())), log=True, margin=0.08)
+        up = spanning(np.maximum(every, min(_LOWEST, every.max() / _DEPTH)), log=True, margin=0.08)
         right, bottom = sheet.width - _SIDE, sheet.height - 50
         axes = Axes(sheet, (84, 10, right - 84, bottom - 10), across, up)
         axes.frame(self.across, self.up)

@@ -251,6 +251,13 @@ def test_in_a_crowd_the_best_keep_their_names_and_colours_and_the_rest_are_grey(
     assert "grey" not in few.words
 
 
+def test_a_picture_of_small_errors_alone_shows_how_they_fall():
+    curve = ErrorCurve(
+        "march", 0, (1.0, 10.0, 100.0), (1e-5, 1e-6, 1e-7), (1e-5, 1e-6, 1e-7), (1e-5, 1e-6, 1e-7), (float("nan"),) * 3
+    )
+    assert "Below" not in render(Convergence("steps", "error", (curve,), 0.99), "c", (700, 400)).words
+
+
 def test_the_answer_is_told_at_once(tmp_path):
     """To each error who is soonest, of all and of the unbiased, by their labels; what is open is called that."""
     told = study()

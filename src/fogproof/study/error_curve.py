@@ -52,6 +52,8 @@ def error_curve(
             float(variance.value) if exact and variance is not None else data.variance, spread(data), exact
         )
         law = law if data.m2 > 0 and _follows(law.value, cell, levels, errors, data) else None
+        # Where calls depend on each other too weakly to be told, their error is that of so much more variance.
+        law = law and replace(law, high=law.high * judged.design_effect)
     return ErrorOverTime(counts, errors, times, law, stays, cell.method.axis != "samples")
 
 

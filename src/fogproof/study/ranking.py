@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import asdict
 from itertools import groupby
@@ -35,7 +36,7 @@ def ranked(scene: Sequence[Measured]) -> dict[str, Any]:
     for m in scene:
         speed = m.record["speed"]
         if speed is not None:
-            relative = None if first is None or not m.reaches else first.reaches[_AT].relative_to(m.reaches[_AT], sure)
+            relative = None if first is None or not m.reaches else _speed(first.reaches[_AT], m.reaches[_AT], sure)
             relative = Estimate(1.0, 1.0, 1.0) if m is first else relative
             speed["rank"] = order.index(m) + 1 if m in reaching else None
             speed["relative"] = None if relative is None else asdict(relative)
@@ -49,6 +50,15 @@ def ranked(scene: Sequence[Measured]) -> dict[str, Any]:
         "notes": notes,
         "text": "\n".join(_to_the_errors(scene, sure) + notes),
     }
+
+
+def _speed(first: Reach, own: Reach, sure: float) -> Estimate | None:
+    """Return the first's time divided by one's own: a mere bound where no more is told of either time."""
+    ratio = first.relative_to(own, sure)
+    if ratio is None:
+        return None
+    low = 0.0 if first.how == "less-than" else ratio.low
+    return Estimate(ratio.value, low, math.inf if own.how == "less-than" else ratio.high)
 
 
 def _of_all_pairs(scene: Sequence[Measured]) -> float:
