@@ -66,8 +66,10 @@ def write_report(record: dict[str, Any], folder: str | Path, *, keep: bool = Fal
 
 def read_record(folder: str | Path) -> dict[str, Any]:
     """Return the record in `folder`, or say in an `InvalidInputError` why there is none that can be shown."""
-    record = load_record(folder)
-    _run(record, str(Path(folder) / RESULTS))
+    record, origin = load_record(folder), str(Path(folder) / RESULTS)
+    run = _run(record, origin)
+    if (run.kind, run.state) == ("verify", "finished") and not run.cases:
+        raise InvalidInputError(f"{origin}: cases must not be empty: no run of cases finishes without one", "cases")
     return record
 
 

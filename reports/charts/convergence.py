@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from fogproof.reports.charts.axes import DASHED, Axes, Marker
-from fogproof.reports.charts.colours import EXPECTED, FIFTH, FOURTH, INK, OBSERVED, SIXTH, THIRD
+from fogproof.reports.charts.colours import EXPECTED, FIFTH, FOURTH, GRID, INK, OBSERVED, SIXTH, THIRD
 from fogproof.reports.charts.direct_labels import EndLabel, height_of, write_labels
 from fogproof.reports.charts.scale import Scale, spanning
 from fogproof.reports.charts.sheet import FONT_SIZE, Sheet
@@ -19,9 +19,15 @@ _MARKERS: tuple[Marker, ...] = ("dot", "square", "triangle", "diamond", "cross")
 _DOTTED = (2.0, 3.0)
 _LOWEST = 3e-6
 """Relative errors below are nobody's question, and would flatten all others; their curves leave the picture."""
+_DEPTH = 1e3
+"""How far below the largest error a picture shows in any case."""
 _LETTERS = 28
 """In a line of a curve's name."""
 _SIDE = 258.0
+_NAMED = 6
+"""Curves that keep their colour and name in a crowd: more colours than these nobody tells apart."""
+_CROWD = 13
+"""So many curves are one."""
 
 
 @dataclass(frozen=True)
@@ -61,25 +67,37 @@ class Convergence:
         "the right: the curve met first is the estimator to take. A curve of half the slope needs a hundred times the "
         "samples for a tenth of the error. The band around a curve holds the truth; where bands overlap, the data do "
         "not tell. Dashed: Sobol points, or steps of a march in place of random samples. Dotted: what the oracle "
-        "predicts. A curve that becomes level has a bias, and no time takes it away."
+        "predicts. A curve that becomes level has a bias, and no time takes it away. Of many curves the few with the least "
+        "squared error times effort at their end are named, all others grey."
     )
 
     @property
     def size(self) -> tuple[float, float]:
         """Width and height [px]: room for the names beside the curves."""
-        return 700.0, max(380.0, 70.0 + height_of([curve.name for curve in self.curves], _LETTERS))
+        return 700.0, max(380.0, 70.0 + height_of([curve.name for curve in self._named()], _LETTERS))
+
+    def _named(self) -> tuple[ErrorCurve, ...]:
+        """Return the curves that keep their names: all, or the best of a crowd."""
+        if len(self.curves) < _CROWD:
+            return self.curves
+        best = sorted(self.curves, key=lambda curve: curve.error[-1] ** 2 * curve.effort[-1])[:_NAMED]
+        return tuple(curve for curve in self.curves if curve in best)
 
     def draw(self, sheet: Sheet) -> str:
         """Draw each curve with its confidence band and name, the oracle's prediction dotted, and a line of the expected slope."""
         across = spanning(np.concatenate([np.array(c.effort) for c in self.curves]), log=True)
         every = np.concatenate([np.array(c.error) for c in self.curves])
-        up = spanning(np.maximum(every, min(_LOWEST, every.max())), log=True, margin=0.08)
+        up = spanning(np.maximum(every, min(_LOWEST, every.max() / _DEPTH)), log=True, margin=0.08)
         right, bottom = sheet.width - _SIDE, sheet.height - 50
         axes = Axes(sheet, (84, 10, right - 84, bottom - 10), across, up)
         axes.frame(self.across, self.up)
+        named = self._named()
         for curve in self.curves:
+            if curve not in named:
+                axes.line(curve.effort, curve.error, GRID, DASHED if curve.dashed else None, 1.5)
+        for curve in named:
             axes.band(curve.effort, np.maximum(curve.low, up.low), curve.high, _look(curve.look)[0], 0.12)
-        for curve in self.curves:
+        for curve in named:
             colour, marker = _look(curve.look)
             axes.line(curve.effort, curve.predicted, colour, _DOTTED)
             axes.line(curve.effort, curve.error, colour, DASHED if curve.dashed else None)
@@ -88,7 +106,7 @@ class Convergence:
             start = max(float(np.nanmax(c.error)) for c in self.curves)
             ends = np.array([across.low, across.high])
             axes.line(ends, 1.3 * start * (ends / across.low) ** self.slope, INK, (9, 5), 1)
-        labels = [_end_of(curve, axes, up) for curve in self.curves]
+        labels = [_end_of(curve, axes, up) for curve in named]
         write_labels(sheet, labels, right, 4, bottom + FONT_SIZE, _LETTERS)
         return self._words(up.low)
 
@@ -96,13 +114,18 @@ class Convergence:
         lowest = min(self.curves, key=lambda curve: curve.error[-1])
         where = self.across.partition(" [")[0]
         guide = f" The long dashes fall with the power {self.slope:g}." if self.slope else ""
+        grey = (
+            f" The {len(self.curves) - len(self._named())} others are grey."
+            if len(self._named()) < len(self.curves)
+            else ""
+        )
         n, lowest_at = len(self.curves), f"{label(lowest.name, 90)}: {lowest.error[-1]:.2g}"
         missing = f" Without any error, and so not drawn: {', '.join(label(name, 90) for name in self.errorless)}."
         under = [f"{label(c.name, 90)}, down to {min(c.error):.2g}" for c in self.curves if min(c.error) < floor]
         below = f" Below the picture, where an arrow points: {'; '.join(under)}." if under else ""
         return (
             f"Error over {where} of {n} estimator{'' if n == 1 else 's'}, both logarithmic, with {self.confidence:.0%} confidence"
-            f" bands. The lowest at its end is {lowest_at}.{guide}{below}{missing if self.errorless else ''}"
+            f" bands. The lowest at its end is {lowest_at}.{grey}{guide}{below}{missing if self.errorless else ''}"
         )
 
 

@@ -1,4 +1,4 @@
-// Filter by outcome and by words, sort tables, and open the case that the address names. The page is complete without this.
+// Filter by outcome and by words, sort tables, move wide figures, and open the case that the address names. The page is complete without this.
 "use strict";
 {
   const form = document.getElementById("filter");
@@ -67,6 +67,15 @@
     });
   };
   document.querySelectorAll("table.sortable").forEach(sortable);
+
+  // A figure that is wider than the screen is moved in its own box, by the keyboard too.
+  const moved = new ResizeObserver((entries) => {
+    for (const { target } of entries) {
+      if (target.scrollWidth > target.clientWidth) target.tabIndex = 0;
+      else target.removeAttribute("tabindex");
+    }
+  });
+  document.querySelectorAll(".drawing").forEach((drawing) => moved.observe(drawing));
 
   if (form) {
     form.hidden = false;

@@ -120,6 +120,9 @@ def parse_record(record: Any, origin: str = "record") -> RunRecord:
         for index, finding in enumerate(case.verdict.findings if case.verdict is not None else ()):
             if finding.figure is not None:
                 parse_figure(finding.figure, f"{origin}: cases.{number}.verdict.findings.{index}.figure")
+    if run.state == "finished" and run.missing:
+        lacks = f"must have {shorten(run.missing[0])}, which was asked for: the run is finished"
+        raise InvalidInputError(f"{origin}: cases {lacks}", "cases")
     due_code = code_of((case.status, case.twin_result) for case in run.cases)
     if run.kind in _OF_CASES_ALONE and run.state == "finished" and run.exit_code != due_code:
         said = f"must be {due_code}, as the outcomes of its cases are, got {run.exit_code}"

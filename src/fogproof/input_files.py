@@ -59,7 +59,11 @@ def size_of(file: BufferedReader) -> int:
     return os.fstat(file.fileno()).st_size
 
 
-def parse_json(text: str) -> Any:
+class RepeatedKeyError(ValueError):
+    """A JSON text has a key twice in one table; the message says which."""
+
+
+def parse_json(text: str | bytes) -> Any:
     """Return the value of a JSON text; a ValueError (or RecursionError) where it is none, or has a key twice in one table."""
     return json.loads(text, object_pairs_hook=_unique)
 
@@ -90,7 +94,9 @@ def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     table = dict(pairs)
     if len(table) < len(pairs):
         keys = [key for key, _ in pairs]
-        raise ValueError(f"the key {next(key for key in keys if keys.count(key) > 1)!r} stands twice in one table")
+        raise RepeatedKeyError(
+            f"the key {next(key for key in keys if keys.count(key) > 1)!r} stands twice in one table"
+        )
     return table
 
 

@@ -16,7 +16,7 @@ import os
 import secrets
 import sys
 from collections import deque
-from collections.abc import Generator, Iterator
+from collections.abc import Callable, Generator, Iterator
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -81,6 +81,20 @@ def pytest_configure(config: pytest.Config) -> None:
             raise pytest.UsageError(f"--fogproof-report: {error}") from None
 
 
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """Begin the record: one of an interrupted session, until it has come to its end."""
+    config = session.config
+    folder = config.getoption("--fogproof-report")
+    if folder and not hasattr(config, "workerinput"):
+        from fogproof.errors import InvalidInputError
+        from fogproof_pytest.kept import begin
+
+        try:
+            begin(folder, config.stash[_SEED], config.stash[_ALPHA], " ".join(config.invocation_params.args))
+        except InvalidInputError as error:
+            raise pytest.UsageError(f"--fogproof-report: {error}") from None
+
+
 @pytest.hookimpl(optionalhook=True)
 def pytest_configure_node(node: Any) -> None:
     """Tell a worker of xdist the seed."""
@@ -137,12 +151,28 @@ def fogproof(request: pytest.FixtureRequest) -> Iterator[Any]:
     said = _marked(item)
     share = config.stash[_ALPHA] * said.get("weight", 1.0) / config.stash[_WEIGHTS]
     passes = said.get("inconclusive", "fail") == "pass"
-    checks = Checks(item.nodeid, share, config.stash[_SEED], said.get("calls"), passes, config.stash[_NEWS])
+    keep = _keeper(config)
+    checks = Checks(item.nodeid, share, config.stash[_SEED], said.get("calls"), passes, config.stash[_NEWS], keep)
     yield checks
     if running := checks._end():
         pytest.fail(
             f"{running} still runs where {item.name} ends: join the thread that it was called in", pytrace=False
         )
+
+
+def _keeper(config: pytest.Config) -> Callable[[str, dict[str, Any], int, str], None]:
+    """Return what keeps a verdict in the folder of the report, whatever becomes of the session."""
+    folder = config.getoption("--fogproof-report")
+    if not folder:
+        return lambda *_: None
+    from fogproof_pytest.kept import keep
+
+    worker = getattr(config, "workerinput", {}).get("workerid", "")
+
+    def kept(test: str, verdict: dict[str, Any], seed: int, process: str) -> None:
+        keep(folder, test, verdict, seed, ", ".join(filter(None, (worker, process))))
+
+    return kept
 
 
 def _drained(news: deque[tuple[Any, ...]]) -> list[tuple[Any, ...]]:
@@ -240,6 +270,8 @@ def _failed(config: pytest.Config) -> bool:
 
 def pytest_terminal_summary(terminalreporter: Any, exitstatus: int, config: pytest.Config) -> None:
     """Say what was judged, what of the false-alarm probability was spent, and what could not have been missed."""
+    if hasattr(config, "workerinput"):  # of xdist, whose reports the session has
+        return
     late: list[Any] = config.stash[_LATE]
     told: dict[tuple[str, int], dict[str, Any]] = {}
     news = [one for report in _reports(config) for one in getattr(report, "fogproof", ())]

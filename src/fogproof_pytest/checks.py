@@ -24,13 +24,21 @@ class Checks:
     share     the test's share of the false-alarm probability
     calls     how many checks share it equally; None: the k-th gets 1 / (k (k + 1)) of it, which adds up to at most all of it
     news      told of every verdict: (test, its number, plain data, why it fails the test or "")
+    keep      told of every verdict at once, wherever it is reached: (test, plain data, seed, the process if it is a forked one)
     """
 
     def __init__(
-        self, test: str, share: float, seed: int, calls: int | None, passes: bool, news: deque[tuple[Any, ...]]
+        self,
+        test: str,
+        share: float,
+        seed: int,
+        calls: int | None,
+        passes: bool,
+        news: deque[tuple[Any, ...]],
+        keep: Callable[[str, dict[str, Any], int, str], None],
     ) -> None:
         self._test, self._share, self._seed = test, share, seed
-        self._calls, self._passes, self._news = calls, passes, news
+        self._calls, self._passes, self._news, self._keep = calls, passes, news, keep
         self._count, self._number, self._running = itertools.count(1), itertools.count(), list[str]()
         self._ended = False
         self._process, self._forks = os.getpid(), _shared()
@@ -97,6 +105,7 @@ class Checks:
     def _tell(self, name: str, verdict: Verdict) -> None:
         fails = verdict.outcome == "rejected" or (verdict.outcome == "inconclusive" and not self._passes)
         told = {"check": name, **verdict.to_dict()}
+        self._keep(self._test, told, self._seed, "" if self._process == os.getpid() else f"process {os.getpid()}")
         self._put(told, f"{name}: {verdict.outcome}" if fails else "")
 
     def _put(self, told: dict[str, Any] | None, why: str) -> None:

@@ -2,7 +2,9 @@
 
 import json
 from dataclasses import replace
+from pathlib import Path
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
@@ -106,6 +108,23 @@ def test_goals_and_bases_are_of_ways(name):
     ways = benchmark.ways()
     assert benchmark.base in ways
     assert set(benchmark.goals) <= set(ways)
+
+
+def test_the_record_tells_which_vectors_numpy_has():
+    """Logarithms take four times as long without AVX-512: a ratio to uniforms says nothing without them."""
+    rows = measure(ticking(WAYS)[0], 0.0)
+    record = run_record(rows, "2026-01-01", 1.0)
+    vectors = record["machine"]["vectors"]
+    found = np.show_config(mode="dicts")["SIMD Extensions"]["found"]
+    assert vectors == (found[-1] if found else "baseline")
+    assert f"with vectors of {vectors}. " in page(record, rows)
+
+
+@pytest.mark.parametrize("name", ["samplers", "directions"])
+def test_the_documentation_has_every_sampler_without_avx_512(name):
+    page = (Path(__file__).resolve().parents[2] / "docs" / "speed-without-avx512.md").read_text(encoding="utf-8")
+    (benchmark,) = select([name])
+    assert all(f"| {name} | {way} |" in page for way in benchmark.ways())
 
 
 def test_the_command_writes_what_it_measured(tmp_path):

@@ -93,7 +93,7 @@ def test_cases(tmp_path):
     for name, words in {
         "parent": KILLED,
         "terminate": KILLED,
-        "group": "ended the process, exit code -9",  # its own group: it has killed itself, too
+        "group": KILLED,
         "child": "ended the process, exit code -9",
         "stop": "draw(rng, n) raised KeyboardInterrupt",
         "generator": "draw(rng, n) raised GeneratorExit",
@@ -247,7 +247,6 @@ def test_a_subject_that_writes_into_every_file_it_finds(tmp_path):
     code = """if True:
         from fogproof.checks import limits
         from subject import writes, writes_and_never_returns
-        limits._REST = 0.2
         for run in (
             lambda: limits.isolated(writes),
             lambda: limits.isolated(writes),
@@ -294,3 +293,73 @@ def test_what_a_subject_writes_is_not_on_a_callers_stdout():
     """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert (done.stdout, "theirs" in done.stderr) == ("mine\n", True)
+
+
+BREAKING = """
+import contextlib, os, signal, threading, time
+import numpy as np
+
+def everywhere():
+    for number in range(3, 64):
+        with contextlib.suppress(OSError):
+            os.write(number, b"a line of a log\\n")
+
+def now_and_then():
+    while True:
+        time.sleep(0.005)
+        everywhere()
+
+class Breaks:
+    def __init__(self, scene, what):
+        self.what = what
+        self.share = np.exp(-scene.ray.length * (scene.built_medium.sigma_a + scene.built_medium.sigma_s))
+
+    def draw(self, rng, n):
+        if n > 64 and self.what == "writes":
+            everywhere()
+        if n > 64 and self.what in ("thread", "later"):
+            threading.Thread(target=now_and_then, daemon=True).start()
+            time.sleep(0.05 if self.what == "thread" else 0.0)
+        if n > 64 and self.what.startswith("stops"):
+            os.kill(os.getppid(), signal.SIGSTOP)
+        if n > 64 and self.what == "stops and raises":
+            raise RuntimeError("no more")
+        if n > 64 and self.what == "stops and ends":
+            os._exit(7)
+        return (rng.random(n) < self.share).astype(float)
+"""
+
+
+DIES = "the worker that drew it died: the subject "
+COSTS = {
+    "writes": f"{DIES}wrote into files that others had opened",
+    "thread": f"{DIES}wrote into files that others had opened",
+    "stops and raises": "draw: RuntimeError: no more",
+    "stops and ends": f"{DIES}ended the process, exit code 7",
+    "stops": "",
+    "later": None,  # nobody knows whether its batch is over by then
+}
+
+
+@POSIX
+def test_nothing_that_an_estimator_does_to_its_worker_holds_the_study_or_costs_another(tmp_path):
+    (tmp_path / "mine.py").write_text(BREAKING)
+    scene = {**SCENE, "estimators": [*({"kind": "mine:Breaks", "what": what} for what in COSTS), "analog"]}
+    table = {"samples": [64, 512], "replicates": 4, "batch": 512, "sobol": False, "scenes": [scene]}
+    (tmp_path / "study.toml").write_text(toml(table))
+    code = """if True:
+        import json
+        from fogproof.study import read_study, run_study
+        print(json.dumps(run_study(read_study("study.toml"), "out", executor="processes", workers=2)))
+    """
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=tmp_path, timeout=100)
+    record = json.loads(done.stdout)
+    errors = {}
+    for failure in record["failures"]:
+        if "was not tried" not in failure["error"]:
+            errors[failure["estimator"]] = failure["error"]
+    for what, words in COSTS.items():
+        told = errors.pop(f"mine:Breaks (what = {what})", "")
+        assert words is None or (words in told and bool(words) == bool(told)), (what, told)
+    assert not errors
+    assert (statuses(record)["analog"], "Traceback" in done.stderr) == ("passed", False)

@@ -192,6 +192,20 @@ def test_an_exit_code_that_is_not_that_of_the_cases_is_named(tmp_path):
     assert ends("report", tmp_path).code == 0
 
 
+def test_a_finished_record_that_has_lost_cases_is_named(tmp_path):
+    told = record()
+    told["asked"] = [case["name"] for case in told["cases"]]
+    (tmp_path / "results.json").write_text(json.dumps(told))
+    assert ends("report", tmp_path).code == 0
+    rejected = [case for case in told["cases"] if case["status"] == "rejected"]
+    (tmp_path / "results.json").write_text(json.dumps(told | {"cases": rejected}))
+    end = ends("report", tmp_path)
+    assert (end.code, b"which was asked for" in end.err) == (2, True)
+    (tmp_path / "results.json").write_text(json.dumps(told | {"cases": [], "asked": [], "exit_code": 0}))
+    end = ends("report", tmp_path)
+    assert (end.code, b"cases must not be empty" in end.err) == (2, True)
+
+
 def test_a_record_of_which_no_page_can_be_made_is_named(tmp_path, monkeypatch):
     import fogproof.reports
 

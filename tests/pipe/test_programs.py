@@ -128,6 +128,7 @@ GREETINGS = {
     b'{"fogproof": 2, "columns": ["x"]}\n': "version 2",
     b'{"fogproof": 1, "columns": ["pdf"]}\n': "without a column",
     b'{"fogproof": 1, "columns": ["x", "value"]}\n': "column 'value'",
+    b'{"fogproof": 2, "fogproof": 1, "columns": ["x"]}\n': "its greeting, in which the key 'fogproof' stands twice",
     b'{"fogproof": 1, "columns": ["x", "x"]}\n': '2 columns "x"',
     b'{"fogproof": 1, "type": "int8", "columns": ["x"]}\n': "'int8'",
     b'{"fogproof": 1, "columns": ["value"]}\n': "the spec describes a sampler",

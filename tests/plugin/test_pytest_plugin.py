@@ -1,6 +1,7 @@
 """A user's three-line test fails for a wrong sampler and passes for a right one, inside one false-alarm probability a session."""
 
 import json
+import os
 import re
 import subprocess
 import sys
@@ -495,3 +496,71 @@ def test_a_rejection_is_not_taken_back_by_another_try(tmp_path, workers):
     assert record["exit_code"] == 1
     right = run(tmp_path, text.replace("k = 2 if", "k = 1 if"), "--reruns", "3", *workers)
     assert right.returncode == 0, right.stdout + right.stderr
+
+
+ENDED = """
+    import os, signal
+
+    def end():
+        {how}
+
+    def test_last(fogproof):
+        try:
+            test_wrong(fogproof)
+        except BaseException:
+            pass
+        end()
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs signals")
+@pytest.mark.parametrize("how", ["os._exit(0)", "os.kill(os.getpid(), 9)", "os.kill(os.getpid(), 15)"])
+def test_what_a_session_had_found_when_it_was_ended_is_kept(tmp_path, how):
+    """Beside what an earlier session had found in the same folder, which looks finished."""
+    folder = tmp_path / "page"
+    option = f"--fogproof-report={folder}"
+    assert run(tmp_path, RIGHT, option).returncode == 0
+    text = textwrap.dedent(RIGHT) + textwrap.dedent(WRONG) + textwrap.dedent(ENDED.format(how=how))
+    run(tmp_path, text, option)
+    assert not (folder / "index.html").exists()
+    made = subprocess.run([sys.executable, "-m", "fogproof", "report", str(folder)], capture_output=True, text=True)
+    assert made.returncode == 0, made.stderr
+    record = json.loads((folder / "results.json").read_text())
+    found = {case["name"].rpartition("::")[2]: case["status"] for case in record["cases"]}
+    assert (found, record["state"]) == (
+        {"test_right": "passed", "test_wrong": "rejected", "test_last": "rejected"},
+        "interrupted",
+    )
+    assert "nfinished" in (folder / "index.html").read_text()
+
+
+def test_what_a_worker_had_found_when_it_was_ended_is_on_the_page(tmp_path):
+    text = textwrap.dedent(RIGHT) + textwrap.dedent(WRONG) + textwrap.dedent(ENDED.format(how="os._exit(0)"))
+    out = run(tmp_path, text, "-n", "2", f"--fogproof-report={tmp_path}/report")
+    assert out.returncode == 1
+    record = json.loads((tmp_path / "report" / "results.json").read_text())
+    last = [case["status"] for case in record["cases"] if "test_last" in case["name"]]
+    assert (sorted(last), record["state"], len(record["cases"])) == (["error", "rejected"], "finished", 4)
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs to fork")
+def test_what_a_forked_process_had_found_is_kept_once(tmp_path):
+    forks = """
+        import os
+
+        def test_forks(fogproof):
+            child = os.fork()
+            if not child:
+                try:
+                    test_wrong(fogproof)
+                finally:
+                    os._exit(0)
+            os.waitpid(child, 0)
+            {then}
+    """
+    for then, state, count in (("os._exit(0)", "interrupted", 2), ("pass", "finished", 2)):
+        text = textwrap.dedent(WRONG) + textwrap.dedent(forks.replace("{then}", then))
+        run(tmp_path, text, f"--fogproof-report={tmp_path}/{state}")
+        record = json.loads((tmp_path / state / "results.json").read_text())
+        assert [case["status"] for case in record["cases"]] == ["rejected"] * count
+        assert record["state"] == state

@@ -257,6 +257,26 @@ def paint(browser, scheme):
     browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": features})
 
 
+@pytest.mark.parametrize("name", ["typical", "study", "gallery"])
+def test_figures_on_a_narrow_screen_are_legible_and_moved_in_their_own_boxes(browser, pages, name):
+    """Letters of 14 px on the sheet stay above 10 px; what is too wide then can be moved without a mouse."""
+    look = """
+        const done = arguments[arguments.length - 1];
+        requestAnimationFrame(() => requestAnimationFrame(() => done([...document.querySelectorAll(".drawing")]
+            .filter(it => it.checkVisibility()).map(it => [it.tabIndex, it.scrollWidth > it.clientWidth,
+                it.firstElementChild.getBoundingClientRect().width / it.firstElementChild.viewBox.baseVal.width]))))"""
+    visit(browser, pages[name])
+    try:
+        for width, moved in ((400, True), (1200, False)):
+            screen = {"width": width, "height": 800, "deviceScaleFactor": 1, "mobile": False}
+            browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", screen)
+            found = browser.execute_async_script(look)
+            assert [(tab, wide) for tab, wide, _ in found] == [(0 if moved else -1, moved)] * len(found) != []
+            assert all(14 * scale > 10 for *_, scale in found)
+    finally:
+        browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
 @pytest.mark.parametrize("name", EVERY_KIND)
 def test_no_serious_barrier(browser, pages, name):
     """axe-core's findings of impact serious or critical, every section open, in light; in dark what colours can spoil."""

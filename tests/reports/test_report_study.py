@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -217,6 +218,44 @@ def test_errors_of_many_magnitudes_stay_inside_the_figure():
     assert "a ↓" in picture.svg
     higher = replace(curve, error=(1.0, 0.1, 0.01), low=(0.5,) * 3, high=(2.0,) * 3)
     assert "Below" not in render(Convergence("samples", "error", (higher,), 0.99), "c", (560, 400)).words
+
+
+def test_a_bound_of_a_speed_stays_on_its_line(tmp_path):
+    """Narrow columns, as on paper, break words anywhere."""
+    told = study()
+    bounds = [{"value": 0.5, "low": 0.0, "high": 0.00827}, {"value": 0.5, "low": 0.0762, "high": 1e301}]
+    for entry_of, bound in zip(told["scenes"][0]["estimators"][1:], bounds, strict=False):
+        entry_of["speed"]["relative"] = bound
+    html = Page(write_report(told, tmp_path)).html
+    for text in ("&lt; 0.00827", "&gt; 0.0762"):
+        assert f'<span class="yes">{text}</span>' in html
+
+
+def test_in_a_crowd_the_best_keep_their_names_and_colours_and_the_rest_are_grey():
+    """Curves of twenty estimators, the third the best for its time though others end lower."""
+    effort, unknown = (1.0, 10.0, 100.0), (float("nan"),) * 3
+
+    def curve(k, size, slow=1.0):
+        error = tuple(size / math.sqrt(e) for e in effort)
+        band = [tuple(f * e for e in error) for f in (0.8, 1.2)]
+        return ErrorCurve(f"estimator {k}", k, tuple(slow * e for e in effort), error, *band, unknown)
+
+    curves = tuple(curve(k, 0.9, 1e4) if k == 19 else curve(k, 1.0 + abs(k - 3)) for k in range(20))
+    picture = render(Convergence("time [s]", "error", curves, 0.99), "c", (700, 400))
+    named = {k for k in range(20) if f">estimator {k}<" in picture.svg}
+    assert named in ({0, 1, 2, 3, 4, 5}, {1, 2, 3, 4, 5, 6})
+    assert "The 14 others are grey." in picture.words
+    assert picture.svg.count('opacity="0.12"') == 6
+    few = render(Convergence("time [s]", "error", curves[:12], 0.99), "c", (700, 400))
+    assert all(f">estimator {k}<" in few.svg for k in range(12))
+    assert "grey" not in few.words
+
+
+def test_a_picture_of_small_errors_alone_shows_how_they_fall():
+    curve = ErrorCurve(
+        "march", 0, (1.0, 10.0, 100.0), (1e-5, 1e-6, 1e-7), (1e-5, 1e-6, 1e-7), (1e-5, 1e-6, 1e-7), (float("nan"),) * 3
+    )
+    assert "Below" not in render(Convergence("steps", "error", (curve,), 0.99), "c", (700, 400)).words
 
 
 def test_the_answer_is_told_at_once(tmp_path):

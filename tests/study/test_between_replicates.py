@@ -1,6 +1,7 @@
 """Realisations of a call that depend on each other are called so, and nothing said of the mean takes them as independent."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -135,6 +136,24 @@ def test_correlation_too_weak_to_be_told_leaves_intervals_that_hold(monkeypatch)
         interval, bias = one["findings"][0].interval, one["bias"]
         ends = bias["low"], bias["high"]
         assert (interval.low, interval.high) == pytest.approx(ends, abs=0.01 * (ends[1] - ends[0]))
+
+
+def test_times_of_what_may_depend_hold_what_its_means_need(monkeypatch):
+    """Neighbours correlated by 0.3: 1.86 times as many samples are needed as the variance of one tells."""
+    monkeypatch.setitem(methods.METHODS, "law", Law)
+    rng, high, needed = np.random.default_rng(), [], []
+    for _ in range(60):
+        drawn = levels(neighbours(0.3), rng, (64, 512), 16)
+        one = measure(
+            cell(), [replace(level, seconds=1e-6 * level.count * np.ones(2)) for level in drawn], ALPHA
+        ).record
+        target = one["speed"]["targets"][0]
+        if target["how"] == "extrapolated":
+            needed.append(target["samples"])
+            high.append(target["high"])
+    assert len(high) > 40
+    assert np.median(needed) == pytest.approx((1 / (0.01 * MEAN)) ** 2, rel=0.1)
+    assert np.median(high) > 1.5 * 1e-6 * np.median(needed)
 
 
 def test_a_resolution_grows_with_what_means_scatter():

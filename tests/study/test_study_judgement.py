@@ -1,7 +1,8 @@
 """What is missing, or has no variance, leaves a judgement open; intervals are no wider than what they are to hold."""
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from study_levels import COUNTS, MEAN, Law, cell, level, normal
 from fogproof.study.batches import COLUMNS, draw_batch
 from fogproof.study.convergence import Z, order_of
 from fogproof.study.judgement import inherited, judge
+from fogproof.study.measures import measure
 from fogproof.study.methods import table as methods
 from fogproof.study.plan import batches_of
 
@@ -82,6 +84,23 @@ def test_deviations_are_from_the_reference(monkeypatch):
     expected = 1 + shift**2
     spread = math.sqrt((2 + 4 * shift**2) / square["n"])
     assert abs(square["mean"] - expected) < 7 * spread
+
+
+@dataclass(frozen=True)
+class Declared(Law):
+    """A law that is declared to be biased."""
+
+    bias: ClassVar[str] = "by construction"
+
+
+@pytest.mark.parametrize(("method", "how"), [(Declared, "never"), (Law, "not-reached")])
+def test_a_declared_bias_that_is_a_mere_constant_is_there_for_good(monkeypatch, method, how):
+    """Without the declaration rare values may be missing, and the error may fall."""
+    monkeypatch.setitem(methods.METHODS, "law", method)
+    one = cell()
+    object.__setattr__(one, "method", method(normal))
+    alike = [level(np.full((16, n), 1.005 * MEAN)) for n in COUNTS]
+    assert [t["how"] for t in measure(one, alike, 1e-9).record["speed"]["targets"]] == ["less-than", how, how]
 
 
 @pytest.mark.parametrize("freedom", [4.0, 16.0, 64.0])

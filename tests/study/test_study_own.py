@@ -207,7 +207,10 @@ def test_what_ends_its_process_later_costs_its_own_results_alone(tmp_path, capsy
     assert "this one was not tried" in record["failures"][-1]["error"]
     assert record["scenes"][0]["estimators"][1]["status"] == "passed"
     told = capsys.readouterr().err
-    assert told.count("failed 1 times: the worker that drew it died, and ") == 1
+    assert (
+        told.count("failed 1 times: the worker that drew it died: the subject ended the process, exit code 0, and ")
+        == 1
+    )
     assert (tmp_path / "run" / "index.html").exists()
 
 

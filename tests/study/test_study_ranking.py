@@ -1,7 +1,7 @@
 """Who is soonest, in words and numbers: intervals that hold all at once, and sentences that say no more than they do."""
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -165,3 +165,30 @@ def test_those_that_are_not_named_are_counted():
         said
         == "To 1 % n0 is 10 times as fast as n1, 100 times as fast as n2, 1 000 times as fast as n3 and more than that of 3 others."
     )
+
+
+def test_a_speed_of_what_is_only_bounded_is_a_bound():
+    """However sure the call's own cost is, of which those that are compared in words make use."""
+    wobble = np.linspace(1, 1.001, ROUNDS)
+    first, second = (Timed(name, seconds * wobble) for name, seconds in (("first", 1.0), ("second", 2.0)))
+
+    def speed(*bounded):
+        for one in (first, second):
+            how = "less-than" if one in bounded else "measured"
+            one.reaches = tuple(replace(reach, how=how, share=0.99) for reach in one.reaches)
+        assert "first is soonest" in ranked([first, second])["text"].lower()
+        found = second.record["speed"]["relative"]
+        return found["low"], found["high"]
+
+    assert speed() == pytest.approx((0.5, 0.5), rel=1e-9)
+    assert speed(second) == (pytest.approx(0.5, rel=1e-9), np.inf)
+    assert speed(first) == (0.0, pytest.approx(0.5, rel=1e-9))
+    assert speed(first, second) == (0.0, np.inf)
+
+
+def test_what_rounds_to_once_as_fast_is_not_said():
+    """That the second takes 1.03 times as long is sure, and no news."""
+    wobble = np.linspace(1, 1.001, ROUNDS)
+    scene = [Timed(f"n{k}", seconds * wobble) for k, seconds in enumerate((1.0, 1.03, 2.0))]
+    assert ranked(scene)["notes"] == ["To 1 % n0 is 2 times as fast as n2."]
+    assert ranked(scene[:2])["notes"] == []

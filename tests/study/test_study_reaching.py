@@ -83,6 +83,25 @@ def test_no_interval_goes_below_the_time_of_a_call_that_is_not_enough():
     assert 1.7 < unsure.relative_to(sure).low < 2.2
 
 
+@pytest.mark.parametrize(
+    ("time", "least", "most"),
+    [
+        (lambda n: 1e-4 + 1e-9 * n, 0.9, 1.0),  # the call's own cost: one sample takes as long
+        (lambda n: 1e-6 * n, 0.05, 0.1),  # samples alone
+        (lambda n: 1e-6 * np.sqrt(n), 0.25, 10**-0.5),
+        (lambda n: 1e-6 * np.minimum(n, 100), 0.0, 0.0),  # fewer samples may be cheaper than any power tells
+    ],
+)
+def test_what_takes_less_than_the_first_count_takes_what_a_call_costs(time, least, most):
+    times = [Times(time(n) * np.exp(0.01 * np.roll([1, -1, 2, -2] * 2, k))) for k, n in enumerate(COUNTS)]
+    errors = [Estimate(e, e, e) for e in (1e-3, 1e-4, 1e-5)]
+    first = reaches_of(ErrorOverTime(COUNTS, errors, times), 1.0, 0.0)[0]
+    sure = Reach(0.01, "measured", "", 10.0, Times(np.full(8, times[0].estimate.value)))
+    assert first.how == "less-than"
+    assert least <= first.relative_to(sure).low <= most
+    assert sure.relative_to(first).high == pytest.approx(1 / most if most else np.inf, rel=1 - least if least else 0)
+
+
 def test_a_smaller_error_that_noise_makes_sooner_takes_as_long_as_the_larger():
     late, soon = (Reach(0.01, "measured", "", 10.0, Times(time * np.array([1, 1.1] * 4))) for time in (1.0, 0.9))
     assert soon.after(late).seconds == late.seconds

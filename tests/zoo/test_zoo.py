@@ -128,16 +128,37 @@ def test_damaged_rows_are_run_again_and_the_others_kept(tmp_path):
         "{}",
         "3",
         line.replace(row.status, "splendid"),
+        line.replace('"killed"', '"survived"'),
+        line.replace('"needed": 0.0', '"needed": 1.0'),
         line[: len(line) // 2],
         "a\0b",
     ):
         for text in (f"{good}{damage}\n", f"{good.splitlines()[0]}\n{damage}\n{line}\n"):
+            assert text != good + line + "\n"
             log.path.write_text(text)
-            assert log.read() == ([row], 1)
+            assert log.read() == ([row], 1), damage
     log.path.write_text(good + "\0" * 512)
     assert log.read() == ([row], 0)
     log.add(replace(row, name="another"))
     assert [kept.name for kept in log.read()[0]] == [row.name, "another"]
+
+
+def test_a_line_before_the_rows_costs_none_and_rows_of_an_unknown_run_are_not_to_be_deleted(tmp_path):
+    log = ZooLog(tmp_path / "zoo.jsonl", {"samples": 20_000, "seed": 3})
+    log.read()
+    row = run_bug(bug(lambda u: u[:, 0] ** 1.5), 20_000, 1e-6, 1)
+    log.add(row)
+    head, line = log.path.read_text().splitlines()
+    for before in ("my notes", "{}", "[1]"):
+        log.path.write_text(f"{before}\n{head}\n{line}\n")
+        assert log.read() == ([row], 1)
+        assert log.seed() == 3
+        log.path.write_text(f"{before}\n{line}\n")
+        with pytest.raises(InvalidInputError, match="has rows, but not the line before them") as told:
+            log.read()
+        assert "delete" not in str(told.value)
+    log.path.write_text(f"{head.replace('3', '4')}\n{line}\n")  # a head changed by hand is that of other rows
+    assert ZooLog(log.path, {"samples": 20_000, "seed": 4}).read() == ([], 1)
 
 
 def test_the_goal_of_a_part_is_not_met_but_unfinished():

@@ -128,7 +128,14 @@ def machine() -> dict[str, Any]:
         "load": list(os.getloadavg()) if hasattr(os, "getloadavg") else None,
         "python": platform.python_version(),
         "versions": versions,
+        "vectors": _vectors(),
     }
+
+
+def _vectors() -> str:
+    """Return the widest instructions that both NumPy and the processor have, "baseline" if none beyond those of every build."""
+    found = np.show_config(mode="dicts").get("SIMD Extensions", {}).get("found", [])
+    return str(found[-1]) if found else "baseline"
 
 
 def _processor() -> str:

@@ -23,9 +23,13 @@ _PAGE = """\
 # {title}
 
 Written by `fogproof bench -o build/bench` (`make bench`) on {processor}, {cores} cores, load {load}, Python {python},
-NumPy {numpy}. Every way of a benchmark runs once in a round, in turn, and times are the processor's; a ratio is the median, over
-{rounds} rounds or more, of a way's time to that of the first way of its benchmark, with quartiles. Errors are medians of relative
-ones. The front holds the ways that no other beats in both time and error. Estimators are compared by variance x time.
+NumPy {numpy} with vectors of {vectors}. Every way of a benchmark runs once in a round, in turn, and times are the processor's; a
+ratio is the median, over {rounds} rounds or more, of a way's time to that of the first way of its benchmark, with quartiles. Errors
+are medians of relative ones. The front holds the ways that no other beats in both time and error. Estimators are compared by
+variance x time.
+
+On x86 NumPy takes logarithms, cosines and cube roots of binary64 several at a time with AVX-512 alone (`X86_V4`, `AVX512_…`).
+Elsewhere they take several times as long beside uniforms, as `log1p` of `samplers` shows, and so do the samplers made of them.
 
 {table}
 
@@ -76,6 +80,7 @@ def page(record: Mapping[str, Any], rows: list[WayTime]) -> str:
         load=f"{on['load'][0]:.1f}" if on["load"] else "unknown",
         python=on["python"],
         numpy=on["versions"]["numpy"],
+        vectors=on["vectors"],
         rounds=min((row.rounds for row in rows), default=0),
         table=table(rows),
         title=f"{record['title']} benchmarks" if record["title"] else "Speed against error",

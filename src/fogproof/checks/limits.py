@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import math
 import multiprocessing
-import multiprocessing.connection
 import os
+import pickle
 import signal
 import sys
-import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
-from functools import partial
+from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
-from fogproof import parents, servers
+from fogproof import servers
 from fogproof.errors import FogproofError, SubjectError, UnsupportedError
+from fogproof.parents import CLOSED, SAID, WROTE, stand_between
 from fogproof.validate import time_limit
 from fogproof_command.startup import StandInError, stand_in
 
@@ -32,7 +32,9 @@ def within(seconds: float, check: Callable[[], Answer]) -> Answer:
     time_limit("seconds", seconds)
     if sys.platform == "win32" or "fork" not in multiprocessing.get_all_start_methods():
         raise UnsupportedError("a time limit needs a system that can fork: run the check in a process of your own")
-    return _answer_of(multiprocessing.get_context("fork"), seconds, check)
+    process = IsolatedProcess(multiprocessing.get_context("fork"), _answer, check)
+    returned: Answer = _answer_of(process, seconds)
+    return returned
 
 
 _SLOW = ("fogproof.verify", "fogproof.checks.suite", "scipy.stats", "scipy.optimize")
@@ -48,16 +50,8 @@ def isolated(check: Callable[[], Answer], seconds: float | None = None, preload:
     """
     if seconds is not None:
         time_limit("seconds", seconds)
-    for tries in range(_TRIES):
-        try:
-            return _answer_of(servers.context(list(preload)), seconds, check)
-        except OSError as error:
-            if (
-                not isinstance(error, ConnectionError | BlockingIOError) or tries + 1 == _TRIES
-            ):  # the latter: it ended meanwhile
-                raise _no_process(error) from None
-            time.sleep(servers.ENDING)
-    raise AssertionError("unreachable")
+    returned: Answer = _answer_of(fresh_process(preload, _answer, check), seconds)
+    return returned
 
 
 def end_isolated() -> None:
@@ -71,76 +65,83 @@ def end_isolated() -> None:
 _NAME = "fogproof subject"
 _TRIES = 3
 """A server of processes that is killed is started again so often for one subject."""
-_REST = 10.0
-"""Seconds beyond its limit that a subject has for the rest of an answer that it has begun."""
+_AGAIN = 0.2
+"""Seconds after which the process between is told to go on: a subject may have stopped it."""
+_KILLED = "the subject killed the process that had started it (its parent, or that one's group); let it end what it started alone"
 _WROTE = "the subject wrote into files that others had opened (descriptors from 3 on); let it write into its own alone"
-_CLOSED = 74
-"""The exit code of a process that cannot send its answer: EX_IOERR of sysexits.h."""
+_CLOSED = "the subject closed files that others had opened (descriptors from 3 on); let it close its own alone"
 
 
-def _answer_of(context: Any, seconds: float | None, check: Callable[[], Answer]) -> Answer:
-    ours, theirs = context.Pipe(duplex=False)
-    child = context.Process(target=_answer, args=(check, theirs), name=_NAME, daemon=True)
-    try:
-        child.start()
-    except (EOFError, OSError) as error:  # EOFError: the server of processes could start none, and ended
-        ours.close()
-        if isinstance(error, ConnectionError):  # it was killed a moment ago
-            raise
-        raise _no_process(error) from None
-    finally:
-        theirs.close()
-    try:
-        end = None if seconds is None else time.monotonic() + seconds
-        if not ours.poll(seconds):
-            raise SubjectError(f"the subject did not return within {seconds:g} s", "sample")
+class IsolatedProcess:
+    """A process for other people's code, behind one that stands between it and us.
+
+    work  called there as work(say, *arguments); every object that it says is an answer here
+    """
+
+    def __init__(self, context: Any, work: Callable[..., None], *arguments: Any) -> None:
+        self._pipe, theirs = context.Pipe(duplex=False)
+        self._process = context.Process(target=_begin, args=(theirs, work, *arguments), name=_NAME, daemon=True)
         try:
-            with _ended_after(None if end is None else end - time.monotonic(), child):
-                good, answer = ours.recv()
-        except EOFError:
-            child.join()
-            raise SubjectError(_without_answer(child.exitcode), "sample") from None
-        except Exception:  # no message of ours, but bytes
-            raise SubjectError(_WROTE, "sample") from None
-    finally:
-        _end(child)
-        child.join()
-        ours.close()
-    if good is None:
-        raise StandInError(answer)
-    if not good:
-        raise SubjectError(*answer)
-    returned: Answer = answer
-    return returned
+            self._process.start()
+        except (EOFError, OSError) as error:  # EOFError: the server of processes could start none, and ended
+            self._pipe.close()
+            if isinstance(error, ConnectionError):  # it was killed a moment ago
+                raise
+            raise _no_process(error) from None
+        finally:
+            theirs.close()
+
+    def answer(self, seconds: float | None = None) -> Any:
+        """Return the next answer; raise `SubjectError` if the process ends without one, or takes longer than `seconds`."""
+        last = math.inf if seconds is None else time.monotonic() + seconds
+        while not self._pipe.poll(max(min(_AGAIN, last - time.monotonic()), 0.0)):
+            if time.monotonic() >= last:
+                raise SubjectError(f"the subject did not return within {seconds:g} s", "sample")
+            with contextlib.suppress(OSError, AttributeError):
+                os.kill(self._process.pid, signal.SIGCONT)
+        try:
+            what, said = self._pipe.recv()
+        except (EOFError, OSError):  # the process between has ended without a word
+            raise SubjectError(self._without_a_word(), "sample") from None
+        if what == SAID:
+            return pickle.loads(said)
+        raise SubjectError(_WROTE if what == WROTE else _ended(said), "sample")
+
+    def kill(self) -> None:
+        """Kill it, with all that it started and left in its session."""
+        if self._process.pid is not None:
+            with contextlib.suppress(OSError, AttributeError):
+                os.killpg(self._process.pid, signal.SIGKILL)
+        self._process.kill()
+
+    def end(self) -> None:
+        """Kill it, and wait until it has ended."""
+        self.kill()
+        self._process.join()
+        self._pipe.close()
+
+    def _without_a_word(self) -> str:
+        self._process.join()
+        code = self._process.exitcode
+        return _KILLED if code < 0 else _ended(code)
 
 
-@contextlib.contextmanager
-def _ended_after(seconds: float | None, child: Any) -> Iterator[None]:
-    """End a process that has begun to answer, and does not come to the end of it in time."""
-    if seconds is None:
-        yield
-        return
-    timer = threading.Timer(max(seconds, 0.0) + _REST, _end, [child])
-    timer.daemon = True
-    with contextlib.suppress(RuntimeError):  # where no more threads may be started nothing watches
-        timer.start()
-    try:
-        yield
-    finally:
-        timer.cancel()
+def _ended(code: int) -> str:
+    return _CLOSED if code == CLOSED else f"the subject ended the process, exit code {code}"
 
 
-def _end(child: Any) -> None:
-    if child.pid is not None:
-        with contextlib.suppress(OSError, AttributeError):  # with all that it started and left in its session
-            os.killpg(child.pid, signal.SIGKILL)
-    child.kill()
-
-
-def _without_answer(code: int) -> str:
-    if code == _CLOSED:
-        return "the subject closed files that others had opened (descriptors from 3 on); let it close its own alone"
-    return f"the subject ended the process, exit code {code}"
+def fresh_process(preload: Sequence[str], work: Callable[..., None], *arguments: Any) -> IsolatedProcess:
+    """Return a process that the server of processes has forked; OSError where there can be none."""
+    for tries in range(_TRIES):
+        try:
+            return IsolatedProcess(servers.context(list(preload)), work, *arguments)
+        except (ConnectionError, BlockingIOError) as error:  # the server ended meanwhile
+            if tries + 1 == _TRIES:
+                raise _no_process(error) from None
+            time.sleep(servers.ENDING)
+        except OSError as error:
+            raise _no_process(error) from None
+    raise AssertionError("unreachable")
 
 
 def _no_process(error: BaseException) -> OSError:
@@ -150,36 +151,31 @@ def _no_process(error: BaseException) -> OSError:
     return OSError(getattr(error, "errno", None) or errno.EAGAIN, f"no process could be started; {fix}")
 
 
-def _answer(check: Callable[[], object], pipe: multiprocessing.connection.Connection) -> None:
-    lock = threading.Lock()
-
-    def send(answer: object) -> None:
-        with lock:
-            try:
-                pipe.send(answer)
-            except OSError:  # our parent is gone, or hears nothing but this number
-                os._exit(_CLOSED)
-
-    parents.stand_between(partial(send, (False, (parents.KILLED, "sample"))))
+def _begin(to: Any, work: Callable[..., None], *arguments: Any) -> None:
+    say = stand_between(to)
     servers.let_go()
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # nobody sends it: a KeyboardInterrupt is the subject's own
-    parent = multiprocessing.parent_process()
-    assert parent is not None
-    with contextlib.suppress(RuntimeError):  # where no more threads may be started nothing watches
-        threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True).start()
+    work(lambda answer: say(pickle.dumps(answer)), *arguments)
+
+
+def _answer_of(process: IsolatedProcess, seconds: float | None) -> Any:
     try:
-        answer = check()
-        parents.confirm()
-        send((True, answer))
+        good, answer = process.answer(seconds)
+    finally:
+        process.end()
+    if good is None:
+        raise StandInError(answer)
+    if not good:
+        raise SubjectError(*answer)
+    return answer
+
+
+def _answer(say: Callable[[object], None], check: Callable[[], object]) -> None:
+    try:
+        say((True, check()))
     except FogproofError as error:
-        send((False, (str(error), error.path)))
+        say((False, (str(error), error.path)))
     except SystemExit as error:  # the subject's own does not come so far
-        send((None, stand_in(error)) if stand_in(error) else (False, (f"SystemExit: {error}", "sample")))
+        say((None, stand_in(error)) if stand_in(error) else (False, (f"SystemExit: {error}", "sample")))
     except BaseException as error:  # the parent must hear of it, whatever it is
-        send((False, (f"{type(error).__name__}: {error}".removesuffix(": "), "sample")))
-
-
-def _end_with(sentinel: int) -> None:
-    """End this process when its parent has ended: nobody would wait for the answer."""
-    multiprocessing.connection.wait([sentinel])
-    os._exit(1)
+        say((False, (f"{type(error).__name__}: {error}".removesuffix(": "), "sample")))

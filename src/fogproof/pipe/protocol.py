@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any, get_args
 
 from fogproof.errors import shorten
+from fogproof.input_files import RepeatedKeyError, parse_json
 from fogproof.pipe.blocks import Type
 from fogproof.pipe.faults import BROKEN, REFUSES
 from fogproof.text import one_line
@@ -108,7 +109,9 @@ def require_answer(line: bytes, n: int, before: int = 0) -> None:
 
 def _object(line: bytes, what: str, example: str) -> dict[str, Any]:
     try:
-        table = json.loads(line)
+        table = parse_json(line)
+    except RepeatedKeyError as error:
+        raise BrokenLineError(f"wrote {what}, in which {error}") from None
     except (ValueError, RecursionError):
         table = None
     if not isinstance(table, dict):

@@ -18,6 +18,7 @@ import numpy as np
 from fogproof.errors import FogproofError, InvalidInputError, InvalidValueError, shorten
 from fogproof.input_files import parse_json, parse_toml, read_text
 from fogproof.scene.image_scenes import ImageScene
+from fogproof.scene.known_keys import known_keys
 from fogproof.scene.scenes import Scene
 
 
@@ -84,7 +85,7 @@ def read_fields(types: dict[str, Any], data: Any, origin: str) -> dict[str, Any]
         with np.errstate(all="ignore"):  # a length that overflows is judged as the infinity that it is
             model = input_model(types).model_validate_json(json.dumps(_with_infinities(data)))
     except pydantic.ValidationError as error:
-        raise _complaint(error, data, origin, tuple(types)) from None
+        raise _complaint(error, data, origin, types) from None
     return {name: getattr(model, name) for name in types}
 
 
@@ -102,6 +103,12 @@ def _model(types: tuple[tuple[str, Any], ...]) -> Any:
         str(part).title().replace("_", "") for part in getattr(fields.get("quantity", ("",))[0], "__args__", ("Input",))
     )
     return pydantic.create_model(name, __config__=pydantic.ConfigDict(extra="forbid", strict=True), **fields)
+
+
+@cache
+def _schema(types: tuple[tuple[str, Any], ...]) -> dict[str, Any]:
+    schema: dict[str, Any] = _model(types).model_json_schema()
+    return schema
 
 
 def _with_infinities(value: Any) -> Any:
@@ -123,7 +130,7 @@ _RULES = {
 }
 
 
-def _complaint(error: Any, data: Any, origin: str, known: tuple[str, ...]) -> InvalidInputError | InvalidValueError:
+def _complaint(error: Any, data: Any, origin: str, types: dict[str, Any]) -> InvalidInputError | InvalidValueError:
     """Turn pydantic's report into one sentence; the first fault is told, the others are counted."""
     faults = {_place(fault, data): fault for fault in reversed(error.errors())}
     place, fault = min(reversed(faults.items()), key=lambda item: item[1]["type"] not in _UNKNOWN)
@@ -137,8 +144,8 @@ def _complaint(error: Any, data: Any, origin: str, known: tuple[str, ...]) -> In
         others = [other for other in others if other not in absent]
         more = f", {', '.join(absent)} too"
     else:
-        meant = difflib.get_close_matches(place, known, 1) if fault["type"] in _UNKNOWN else []
-        more = f"; did you mean {meant[0]}?" if meant else ""
+        meant = _meant(place, data, types) if fault["type"] in _UNKNOWN else ""
+        more = f"; did you mean {meant}?" if meant else ""
     more += f" (and {len(others)} more)" if others else ""
     cause = fault.get("ctx", {}).get("error")
     if isinstance(cause, InvalidValueError):
@@ -156,6 +163,16 @@ def _complaint(error: Any, data: Any, origin: str, known: tuple[str, ...]) -> In
         rule = _RULES.get(fault["type"], _lower(fault["msg"]).replace("input should be", "must be", 1))
         reason = reasons.get(fault["type"], f"{rule}, got {shorten(fault['input'])}")
     return InvalidInputError(f"{origin}: {place} {reason}{more}", place)
+
+
+def _meant(place: str, data: Any, types: dict[str, Any]) -> str:
+    """Return the key of the same table that an unknown one resembles, "" if none does."""
+    *way, wrong = place.split(".")
+    try:
+        keys = known_keys(_schema(tuple(types.items())), data, way) if way else list(types)
+    except (KeyError, ValueError, IndexError):  # a key with a dot in it
+        return ""
+    return next(iter(difflib.get_close_matches(wrong, keys, 1)), "")
 
 
 def _place(fault: Any, data: Any) -> str:

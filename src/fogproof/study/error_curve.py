@@ -52,6 +52,8 @@ def error_curve(
             float(variance.value) if exact and variance is not None else data.variance, spread(data), exact
         )
         law = law if data.m2 > 0 and _follows(law.value, cell, levels, errors, data) else None
+        # Where calls depend on each other too weakly to be told, their error is that of so much more variance.
+        law = law and replace(law, high=law.high * judged.design_effect)
     return ErrorOverTime(counts, errors, times, law, stays, cell.method.axis != "samples")
 
 
@@ -60,11 +62,13 @@ def stays_for_good(
 ) -> float:
     """Return the error that is there for good: a march's floor where it has met it, or the least bias a rejected one can have.
 
-    A bias that is not the same at all counts may fall further: nothing of it is there for good.
+    A bias that is not the same at all counts may fall further: nothing of it is there for good. That of what declares one, and is
+    the same number whatever is drawn, is.
     """
     if floor is not None:
         return floor.error if floor.reached else 0.0
-    if judged.outcome != "rejected" or bias is None or not bias.low * bias.high > 0:
+    constant = bool(cell.method.bias) and cell.method.axis == "samples" and data.n > 0 and data.low == data.high
+    if not (judged.outcome == "rejected" or constant) or bias is None or not bias.low * bias.high > 0:
         return 0.0
     apart = cell.points == "sobol" or judged.calls != "independent"
     if not (_intervals_meet(levels) if apart else _alike(levels, data)):

@@ -1,26 +1,20 @@
 """Where batches are drawn: threads, processes, or a Dask cluster, all behind `concurrent.futures`.
 
-A worker that dies takes its batches with it. They are drawn again: by a new pool, or by Dask elsewhere. `Workers.restart` makes the
-new pool; whether a batch kills its workers is for the caller to find out.
+A process that ends takes its batch with it, which is drawn again: by a new one, or by Dask elsewhere. What an estimator has left in
+a process, a thread that writes where it should not, say, may end it under another's batch: `Workers.restart` makes new ones.
 """
 
 from __future__ import annotations
 
 import contextlib
-import multiprocessing
-import multiprocessing.connection
-import multiprocessing.util
 import os
-import signal
-import sys
-import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from typing import Any
 
-from fogproof import parents, servers
 from fogproof.errors import InvalidValueError, NotInstalledError, SubjectError
+from fogproof.study.processes import Processes
 
 PATIENCE = 10.0
 """Seconds a scheduler has to answer."""
@@ -68,43 +62,13 @@ def open_workers(where: str, workers: int | None) -> Iterator[Workers]:
     if where == "threads":
         made = Workers(lambda: ThreadPoolExecutor(n), n)
     elif where == "processes":
-        made = Workers(
-            lambda: ProcessPoolExecutor(n, servers.context(["fogproof.study.batches"]), initializer=_as_worker), n
-        )
+        made = Workers(lambda: Processes(n), n)
     else:
         raise InvalidValueError("--executor", "must be threads, processes or dask://host:port", where)
     try:
         yield made
     finally:
         made.executor.shutdown(wait=True, cancel_futures=True)
-
-
-def _as_worker() -> None:
-    """Leave signals to the process that coordinates, which wants the batches that are under way; end when that process ends.
-
-    A worker that outlives it would wait for work for ever, and keep open what its parent's output is read from.
-    """
-    parents.stand_between(lambda: None)
-    servers.let_go()
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    multiprocessing.util.Finalize(None, _end_at_once, exitpriority=1000)  # before anybody is waited for
-    parent = multiprocessing.parent_process()
-    assert parent is not None
-    with contextlib.suppress(RuntimeError):  # where no more threads may be started nothing watches
-        threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True).start()
-
-
-def _end_at_once() -> None:
-    """End a worker that has nothing more to do: Python would wait for threads that an estimator has left."""
-    for stream in (sys.stdout, sys.stderr):
-        with contextlib.suppress(OSError, ValueError, AttributeError):
-            stream.flush()
-    os._exit(0)
-
-
-def _end_with(sentinel: int) -> None:
-    multiprocessing.connection.wait([sentinel])
-    os._exit(1)
 
 
 @contextlib.contextmanager

@@ -21,6 +21,13 @@ from fogproof.validate import number
 
 Estimated = Literal["transmittance", "fog", "airlight", "radiance"]
 UNITS = {"transmittance": "1", "fog": "W/(m^2 sr)", "airlight": "W/(m^2 sr)", "radiance": "W/(m^2 sr)"}
+_LOOKED_AT: dict[str, tuple[str, ...]] = {
+    "transmittance": (),
+    "fog": ("ambient", "background"),
+    "airlight": ("light", "occluders"),
+    "radiance": ("light", "shape"),
+}
+"""Of what a scene may have beside a medium and a ray."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -46,8 +53,25 @@ class Question:
         number("background", self.background, "must be finite and >= 0 [W/(m^2 sr)]", 0)
         if self.quantity not in get_args(Estimated):
             raise InvalidValueError("quantity", f"must be one of {', '.join(get_args(Estimated))}", self.quantity)
+        unused = (name for name in self._given() if name not in _LOOKED_AT[self.quantity])
+        for name in unused:
+            fix = "take it out, or ask for another quantity"
+            raise InvalidValueError(
+                name, f"must not be given: the {self.quantity} does not look at it", getattr(self, name), fix
+            )
         if self.ray.shape:
             raise InvalidValueError("ray", "must be one ray", list(self.ray.shape))
+
+    def _given(self) -> list[str]:
+        """Return what the scene has beside a medium and a ray."""
+        given = {
+            "light": self.light is not None,
+            "occluders": bool(self.occluders),
+            "shape": not isinstance(self.shape, Unbounded),
+            "ambient": self.ambient != 0,
+            "background": self.background != 0,
+        }
+        return [name for name, is_given in given.items() if is_given]
 
     @cached_property
     def built_medium(self) -> AnyMedium:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import asdict
 from itertools import groupby
@@ -35,7 +36,7 @@ def ranked(scene: Sequence[Measured]) -> dict[str, Any]:
     for m in scene:
         speed = m.record["speed"]
         if speed is not None:
-            relative = None if first is None or not m.reaches else first.reaches[_AT].relative_to(m.reaches[_AT], sure)
+            relative = None if first is None or not m.reaches else _speed(first.reaches[_AT], m.reaches[_AT], sure)
             relative = Estimate(1.0, 1.0, 1.0) if m is first else relative
             speed["rank"] = order.index(m) + 1 if m in reaching else None
             speed["relative"] = None if relative is None else asdict(relative)
@@ -49,6 +50,15 @@ def ranked(scene: Sequence[Measured]) -> dict[str, Any]:
         "notes": notes,
         "text": "\n".join(_to_the_errors(scene, sure) + notes),
     }
+
+
+def _speed(first: Reach, own: Reach, sure: float) -> Estimate | None:
+    """Return the first's time divided by one's own: a mere bound where no more is told of either time."""
+    ratio = first.relative_to(own, sure)
+    if ratio is None:
+        return None
+    low = 0.0 if first.how == "less-than" else ratio.low
+    return Estimate(ratio.value, low, math.inf if own.how == "less-than" else ratio.high)
 
 
 def _of_all_pairs(scene: Sequence[Measured]) -> float:
@@ -174,8 +184,9 @@ def _compared(scene: Sequence[Measured], sure: float) -> list[str]:
         ratio = other.reaches[_AT].relative_to(first.reaches[_AT], sure)
         if ratio is not None and ratio.low > 1:
             most = first.reaches[_AT].how == "less-than"
-            times = f"at least {_plain(ratio.low)}" if most else _plain(ratio.value)
-            said.append(f"{times} times as fast as {_inside(other)}")
+            times = _plain(ratio.low if most else ratio.value)
+            if times != "1":
+                said.append(f"{'at least ' if most else ''}{times} times as fast as {_inside(other)}")
     more = len(said) - _SHOWN
     shown = said if more <= 1 else [*said[:_SHOWN], f"more than that of {more} others"]
     return [f"To {_percent(TARGETS[_AT])} {_inside(first)} is {_listed(shown)}."] if said else []

@@ -15,7 +15,7 @@ from typing import Literal
 import numpy as np
 
 from fogproof.study.convergence import CONFIDENCE, Estimate, Z, deviations
-from fogproof.study.growth import least_beyond, power_at, time_at, time_beyond
+from fogproof.study.growth import least_beyond, power_at, share_before, time_at, time_beyond
 from fogproof.study.speed import Times, scaled
 
 TARGETS = (0.01, 0.001, 0.0001)
@@ -67,6 +67,7 @@ class Reach:
     noise    how far the logarithm of the time reaches below and above because of the error's own interval
     least    what is known to be needed in any case: the time of a larger error, or of so many samples
     call     the time of the first count where that is not enough, None elsewhere: no estimate that is takes less
+    share    of the time that is told where the first count is better already: what is needed takes so much of it at least
     """
 
     error: float
@@ -78,6 +79,7 @@ class Reach:
     untimed: bool = False
     least: float = 0.0
     call: Times | None = None
+    share: float = 0.0
 
     @property
     def reached(self) -> bool:
@@ -110,12 +112,16 @@ class Reach:
         ratio, more = self.times.relative_to(other.times, confidence), deviations(confidence) / Z
         noise = math.hypot(self.noise[0], other.noise[1]), math.hypot(self.noise[1], other.noise[0])
         below, above = _wider(ratio, (more * noise[0], more * noise[1]))
-        below = math.inf if self.how == "less-than" else below
-        above = math.inf if other.how == "less-than" else above
+        below += self._less()
+        above += other._less()
         found = scaled(ratio.value, below, above)
         most = found.high if other.call is None else min(found.high, self._most(other.call, confidence))
         least = found.low if self.call is None else max(found.low, 1 / other._most(self.call, confidence))
         return Estimate(found.value, min(least, found.value), max(most, found.value))
+
+    def _less(self) -> float:
+        """Return how far the logarithm of the time reaches below what is told, because fewer samples may do."""
+        return 0.0 if self.how != "less-than" else -math.log(self.share) if self.share > 0 else math.inf
 
     def _most(self, call: Times, confidence: float) -> float:
         """Return how many times as long as a call it takes at most."""
@@ -152,7 +158,8 @@ def reach_of(curve: ErrorOverTime, target: float, error: float, hidden: float = 
     if first == 0:
         above = _noise(curve, 0, 1, 0.0)[1] if len(size) > 1 and curve.errors[0].high > target else 0.0
         how = "less-than" if curve.counts[0] > 1 else "measured"  # there is nothing less than one
-        return Reach(error, how, "", float(curve.counts[0]), curve.times[0], (0.0, above))
+        share = share_before(curve.counts, curve.times, 1.0)
+        return Reach(error, how, "", float(curve.counts[0]), curve.times[0], (0.0, above), share=share)
     before, after = size[first - 1], max(size[first], 1e-300)
     share = math.log(before / target) / math.log(before / after)
     at = float(curve.counts[first - 1] * (curve.counts[first] / curve.counts[first - 1]) ** share)
@@ -184,7 +191,8 @@ def _noise(curve: ErrorOverTime, a: int, b: int, share: float) -> tuple[float, f
 def _by_the_law(curve: ErrorOverTime, law: Estimate, target: float, error: float, hidden: float) -> Reach:
     needed, unsure = law.value / target**2, 2 * hidden / target
     if needed <= curve.counts[0]:
-        return Reach(error, "less-than", "", float(curve.counts[0]), curve.times[0])
+        share = share_before(curve.counts, curve.times, max(1.0, law.low / target**2 * math.exp(-unsure)))
+        return Reach(error, "less-than", "", float(curve.counts[0]), curve.times[0], share=share)
     beyond = needed > curve.counts[-1]
     if beyond and curve.ends:
         return Reach(error, "not-reached", "larger counts could not be drawn", None, curve.times[-1])

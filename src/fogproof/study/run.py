@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import concurrent.futures
-import time
 from collections import Counter, deque
 from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import BrokenExecutor, CancelledError, Future
+from concurrent.futures import CancelledError, Future
 from dataclasses import dataclass, field
 
-from fogproof import servers
-from fogproof.errors import SubjectError
 from fogproof.study.batches import BatchResult, run_batch
 from fogproof.study.cells import Cell
 from fogproof.study.executors import ClusterError, Workers
 from fogproof.study.files import Study
 from fogproof.study.plan import Batch
+from fogproof.study.processes import FailedBatchError, LostProcessError, NoProcessError
 from fogproof.study.stored_batches import Store
 
 ATTEMPTS = 3
@@ -33,14 +31,18 @@ Advance = Callable[[Batch, "BatchResult | None"], None]
 
 @dataclass
 class _Work:
-    """What is to be drawn: `waiting` in any number, `suspects` one at a time with nobody else at work."""
+    """What is to be drawn: `waiting` in any number, `suspects` one at a time with nobody else at work.
+
+    ended   batches under which a process ended
+    deadly  of a cell, batches that were given up for that
+    """
 
     waiting: deque[Batch]
     suspects: deque[Batch] = field(default_factory=deque)
     running: dict[Future[BatchResult], Batch] = field(default_factory=dict)
     failed: dict[int, int] = field(default_factory=dict)
+    ended: set[int] = field(default_factory=set)
     deadly: Counter[int] = field(default_factory=Counter)
-    """Batches of a cell that were given up because they ended their workers."""
 
     def next(self, slots: int) -> Batch | None:
         """Return the next batch to hand out, None if the workers have enough."""
@@ -87,23 +89,16 @@ def draw_missing(
 
 
 def _hand_out(study: Study, cells: Sequence[Cell], batch: Batch, pool: Workers, work: _Work, draw: DrawBatch) -> None:
+    if batch.number in work.ended:  # whose fault that was is known if nobody has been at work in the process before
+        pool.restart()
     reference = float(cells[batch.cell].reference.value)
-    for tries in range(ATTEMPTS):
-        try:
-            future = pool.executor.submit(draw, study.text, study.folder, batch, reference)
-            break
-        except (BrokenExecutor, EOFError, ConnectionError) as error:  # it, or what forks its workers, has been killed
-            if tries + 1 == ATTEMPTS:
-                what = "what starts the workers is killed again and again; what was drawn is kept"
-                raise SubjectError(f"{what}: give the same command again", "--executor") from error
-            time.sleep(servers.ENDING)
-            pool.restart()
-    work.running[future] = batch
+    work.running[pool.executor.submit(draw, study.text, study.folder, batch, reference)] = batch
 
 
 def _collect(ready: set[Future[BatchResult]], work: _Work, store: Store, pool: Workers, advance: Advance) -> None:
     """Store what is ready; see to what has failed."""
-    good, broken = [], []
+    results = {}
+    failed: list[tuple[Batch, BaseException]] = []
     for future in ready:
         batch = work.running.pop(future)
         try:
@@ -111,30 +106,22 @@ def _collect(ready: set[Future[BatchResult]], work: _Work, store: Store, pool: W
         except CancelledError:  # not by us: a Dask scheduler does that when it ends
             raise ClusterError("the cluster was lost; what was drawn is kept: give the same command again") from None
         if error is None:
-            good.append((batch, future.result()))
-        elif isinstance(error, BrokenExecutor):
-            broken.append(batch)
-        else:  # whatever a batch does, the others go on
-            _again(batch, f"{type(error).__name__}: {error}", work, store, advance)
-    if good:
-        store.add([result for _, result in good])
-        for batch, result in good:
-            advance(batch, result)
-    if broken:
-        _after_a_death(broken, work, store, pool, advance)
-
-
-def _after_a_death(broken: list[Batch], work: _Work, store: Store, pool: Workers, advance: Advance) -> None:
-    """A worker has died, and nobody knows which batch did it: each is drawn again alone, where a second death would tell."""
-    alone = len(broken) == 1 and not work.running
-    broken += work.running.values()
-    work.running.clear()
-    pool.restart()
-    for batch in broken:
-        if alone:
-            work.deadly[batch.cell] += _again(batch, _DIED, work, store, advance)
+            results[batch] = future.result()
         else:
-            work.suspects.append(batch)
+            failed.append((batch, error))
+    if results:
+        store.add(results.values())
+    for batch, result in results.items():
+        advance(batch, result)
+    for batch, error in failed:  # whatever a batch does, the others go on
+        if isinstance(error, NoProcessError):
+            raise error
+        if isinstance(error, LostProcessError):
+            work.ended.add(batch.number)
+            work.deadly[batch.cell] += _again(batch, f"{_DIED}: {error}", work, store, advance)
+        else:
+            words = str(error) if isinstance(error, FailedBatchError) else f"{type(error).__name__}: {error}"
+            _again(batch, words, work, store, advance)
 
 
 def _again(batch: Batch, error: str, work: _Work, store: Store, advance: Advance) -> bool:

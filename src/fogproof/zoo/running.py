@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import importlib.util
 import json
 import time
@@ -134,6 +135,10 @@ def _status(bug: Bug, outcome: str, needed: float, samples: int) -> Status:
     return "infeasible" if needed > samples else "survived"
 
 
+_SUM = "sum"
+"""The key of a row's checksum."""
+
+
 @dataclass(frozen=True)
 class ZooLog:
     """Rows of a run, a line of JSON each, so that a run that was stopped goes on where it was.
@@ -146,36 +151,60 @@ class ZooLog:
     settings: dict[str, Any]
 
     def read(self) -> tuple[list[ZooRow], int]:
-        """Return the rows of earlier runs, and how many lines are damaged: what stood there is run again.
+        """Return the rows of earlier runs, and how many lines are not what was written: what stood there is run again.
 
-        A file whose head is none of ours is refused.
+        A file without our head is refused.
         """
         lines = self._lines()
         if not lines:
             add_line(self.path, self.settings)
             return [], 0
-        first, *rest = map(_read, lines)
-        if not isinstance(first, dict) or not self.settings.keys() <= first.keys():
-            what = f"{self.path} holds no rows of a zoo; choose another folder, or delete it"
+        head = self._head(lines)
+        if head is None:
+            rows_there = any(isinstance(held, dict) and _SUM in held for held in lines)
+            what = "holds no rows of a zoo; choose another folder, or delete it"
+            if rows_there:
+                what = "has rows, but not the line before them that says what they depend on; put it back, or choose another folder"
+            raise InvalidInputError(f"{self.path} {what}", str(self.path))
+        if head != self.settings:
+            what = f"{self.path} is of other settings, {head}; choose another folder, or delete it"
             raise InvalidInputError(what, str(self.path))
-        if first != self.settings:
-            what = f"{self.path} is of other settings, {first}; choose another folder, or delete it"
-            raise InvalidInputError(what, str(self.path))
-        rows = [row for line in rest if (row := _row(line)) is not None]
+        rest = [held for held in lines if held is not head]
+        rows = [row for held in rest if (row := self._row(held)) is not None]
         return list({row.name: row for row in rows}.values()), len(rest) - len(rows)
 
     def seed(self) -> int | None:
         """Return the seed of the rows that are kept, None if there are none."""
-        head = _read((self._lines() or [""])[0])
-        seed = head.get("seed") if isinstance(head, dict) else None
+        seed = (self._head(self._lines()) or {}).get("seed")
         return seed if isinstance(seed, int) else None
 
-    def _lines(self) -> list[str]:
-        return whole_lines(read_text(self.path, "the rows")) if self.path.exists() else []
-
     def add(self, row: ZooRow) -> None:
-        """Write one row."""
-        add_line(self.path, asdict(row))
+        """Write one row, with a checksum of it and of what it depends on."""
+        add_line(self.path, {**asdict(row), _SUM: self._sum(asdict(row))})
+
+    def _lines(self) -> list[Any]:
+        """Return what the lines hold, None of one that is no JSON."""
+        return [_read(line) for line in whole_lines(read_text(self.path, "the rows"))] if self.path.exists() else []
+
+    def _head(self, lines: list[Any]) -> dict[str, Any] | None:
+        """Return the first line that says what rows depend on; somebody may have written before it."""
+        wanted = self.settings.keys()
+        return next((h for h in lines if isinstance(h, dict) and _SUM not in h and wanted <= h.keys()), None)
+
+    def _row(self, held: Any) -> ZooRow | None:
+        """Return the row that a line holds, None if it holds none, or not what was written."""
+        try:
+            said = {key: value for key, value in held.items() if key != _SUM}
+            if held[_SUM] != self._sum(said):
+                return None
+            row = ZooRow(**{**said, "causes": tuple(said["causes"]), "checks": tuple(said["checks"])})
+        except (AttributeError, TypeError, KeyError):
+            return None
+        return row if row.status in get_args(Status) and isinstance(row.name, str) else None
+
+    def _sum(self, row: dict[str, Any]) -> str:
+        words = json.dumps([self.settings, row], sort_keys=True).encode()
+        return hashlib.blake2b(words, digest_size=8).hexdigest()
 
 
 def _read(line: str) -> Any:
@@ -184,12 +213,3 @@ def _read(line: str) -> Any:
         return json.loads(line)
     except (ValueError, RecursionError):
         return None
-
-
-def _row(held: Any) -> ZooRow | None:
-    """Return the row that a line holds, None if it holds none."""
-    try:
-        row = ZooRow(**{**held, "causes": tuple(held["causes"]), "checks": tuple(held["checks"])})
-    except (TypeError, KeyError):
-        return None
-    return row if row.status in get_args(Status) and isinstance(row.name, str) else None

@@ -1,4 +1,4 @@
-"""Samplers in units of drawing their uniforms; directions against drawing two uniforms and storing three numbers."""
+"""Samplers in units of drawing their uniforms, beside a logarithm; directions in units of drawing two and storing three numbers."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ HG = HenyeyGreenstein(0.6)
 TILTED = (2 / 7, -3 / 7, 6 / 7)
 
 ONE: dict[str, Callable[[np.ndarray], Any]] = {
+    "log1p": np.log1p,
     "HG cosine": Cosines(HG).sample,
     "free path": FreePath(2.5).distances,
     "free path, with density": FreePath(2.5).sample,
