@@ -88,9 +88,10 @@ def _judged(subject: Subject, seen: MapDensity) -> Finding:
         f" {1 / max(1 - worst, 1e-300):.5g} times as dense as the pdf says: it times the derivative of the map is"
         f" {1 - worst:.5g} there on average, and for a right pdf never less than 1"
     )
-    if np.ptp(seen.volume) < tolerance:
+    alike = bool(np.ptp(seen.volume) < tolerance)
+    if alike:
         message += "; it is the same everywhere: the pdf is too small, or there are points that no uniforms lead to"
-    return Finding(NAME, "rejected", message, effect=worst, cause="shape")
+    return Finding(NAME, "rejected", message, effect=worst, cause="skipped band" if alike else "shape")
 
 
 def _agreement(volume: np.ndarray) -> str:
