@@ -6,7 +6,24 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from planted_samplers import box, line, lobe, square, stream, table, volume, weighted, with_atoms, with_events
+from planted_samplers import (
+    box,
+    few,
+    line,
+    line_with_cdf,
+    lobe,
+    peak_with_cdf,
+    peak_with_inverse,
+    square,
+    stream,
+    table,
+    volume,
+    wedge,
+    weighted,
+    with_atoms,
+    with_events,
+)
+from planted_smooth import few_entries, in_uniforms, least_seen, polynomials, products, straight_and_bent, with_density
 
 from fogproof.checks import Subject
 from fogproof.contracts import Draw
@@ -15,44 +32,10 @@ Right = Callable[[], Subject]
 Wrong = Callable[[Subject, float, int, bool], Subject]
 
 
-def _by_line(subject: Subject, move: Callable[[np.ndarray], np.ndarray], axis: int = 0) -> Subject:
-    """Return the subject with one coordinate of its points moved by a map of [0, 1] to itself."""
-    sample = subject.sample
-
-    def moved(u: np.ndarray) -> np.ndarray:
-        x = np.array(sample(u))
-        column = x if x.ndim == 1 else x[:, axis]
-        column[...] = move(column)
-        return x
-
-    return replace(subject, sample=moved)
-
-
 def _shifted(subject: Subject, size: float, trial: int, up: bool) -> Subject:
     """Move a share `size` of the samples across the middle."""
     near = lambda x: (x >= 0.5 - size) & (x < 0.5) if up else (x >= 0.5) & (x < 0.5 + size)  # noqa: E731
-    return _by_line(subject, lambda x: np.where(near(x), x + (size if up else -size), x))
-
-
-def _with_density(density: Callable[[np.ndarray], np.ndarray]) -> Callable[[np.ndarray], np.ndarray]:
-    """Return the map from uniform numbers to numbers of a density on [0, 1], by its numerical cdf."""
-    edges = np.linspace(0, 1, 1 << 16)
-    mass = np.maximum(density(0.5 * (edges[1:] + edges[:-1])), 0.0)
-    cdf = np.concatenate([[0.0], np.cumsum(mass)]) / mass.sum()
-    return lambda u: np.interp(u, cdf, edges)
-
-
-def _smooth(subject: Subject, size: float, trial: int, up: bool) -> Subject:
-    from numpy.polynomial.legendre import Legendre
-
-    k = 1 + trial % 4
-    p = Legendre.basis(k)
-    sign = 1 if up else -1
-    return _by_line(subject, _with_density(lambda x: 1 + sign * size * np.sqrt(2 * k + 1) * p(2 * x - 1)))
-
-
-def _straight_or_bent(subject: Subject, size: float, trial: int, up: bool) -> Subject:
-    return _smooth(subject, size, trial % 2, up)
+    return in_uniforms(subject, lambda x: np.where(near(x), x + (size if up else -size), x))
 
 
 def _two_level(size: float, up: bool) -> tuple[float, float, float]:
@@ -66,15 +49,15 @@ def _two_level(size: float, up: bool) -> tuple[float, float, float]:
 def _uneven_line(subject: Subject, size: float, trial: int, up: bool, cells: int) -> Subject:
     share, high, low = _two_level(size, up)
     chosen = np.random.default_rng(trial).permutation(cells) < share * cells
-    return _by_line(
-        subject, _with_density(lambda x: np.where(chosen[np.minimum((x * cells).astype(int), cells - 1)], high, low))
+    return in_uniforms(
+        subject, with_density(lambda x: np.where(chosen[np.minimum((x * cells).astype(int), cells - 1)], high, low))
     )
 
 
 def _uneven_axis(subject: Subject, size: float, trial: int, up: bool, cells: int) -> Subject:
     share, high, low = _two_level(size, up)
     chosen = np.random.default_rng(trial).permutation(cells) < share * cells
-    along = _with_density(lambda x: np.where(chosen[np.minimum((x * cells).astype(int), cells - 1)], high, low))
+    along = with_density(lambda x: np.where(chosen[np.minimum((x * cells).astype(int), cells - 1)], high, low))
 
     def sample(u: np.ndarray) -> np.ndarray:
         x = u.copy()
@@ -100,31 +83,18 @@ def _uneven_plane(subject: Subject, size: float, trial: int, up: bool, cells: in
 
 def _ripple(subject: Subject, size: float, trial: int, up: bool) -> Subject:
     turns = 1 + trial % 3
-    return _by_line(
-        subject, _with_density(lambda x: 1 + size * np.sqrt(2) * np.sin(2 * np.pi * (turns * x + 0.5 * up)))
+    return in_uniforms(
+        subject, with_density(lambda x: 1 + size * np.sqrt(2) * np.sin(2 * np.pi * (turns * x + 0.5 * up)))
     )
-
-
-def _dependent(subject: Subject, size: float, trial: int, up: bool) -> Subject:
-    sign = 1 if up else -1
-
-    def sample(u: np.ndarray) -> np.ndarray:
-        tilt = sign * 3 * size * (2 * u[:, 0] - 1)  # density of y given x: 1 + tilt (2 y - 1)
-        v = u[:, 1]
-        root = np.sqrt((1 - tilt) ** 2 + 4 * tilt * v)
-        y = np.where(np.abs(tilt) < 1e-9, v, (tilt - 1 + root) / np.where(tilt == 0, 1, 2 * tilt))
-        return np.stack([u[:, 0], np.clip(y, 0, 1)], axis=-1)
-
-    return replace(subject, sample=sample)
 
 
 def _missing(subject: Subject, size: float, trial: int, up: bool) -> Subject:
     start = np.random.default_rng(trial).random() * (1 - size)
-    return _by_line(subject, lambda x: np.where(x * (1 - size) < start, x * (1 - size), x * (1 - size) + size))
+    return in_uniforms(subject, lambda x: np.where(x * (1 - size) < start, x * (1 - size), x * (1 - size) + size))
 
 
 def _tail(subject: Subject, size: float, trial: int, up: bool) -> Subject:
-    return _by_line(subject, lambda x: (1 - size) * x + (size if up else 0))
+    return in_uniforms(subject, lambda x: (1 - size) * x + (size if up else 0))
 
 
 def _patch(subject: Subject, size: float, trial: int, up: bool) -> Subject:
@@ -150,7 +120,7 @@ def _one_cell(subject: Subject, size: float, trial: int, up: bool, cells: int) -
     cell = np.random.default_rng(trial).integers(cells)
     ratio = 1 / (1 + size) if up else min(1 / max(1 - size, 1e-9), 0.5 * cells)
     inside = lambda x: (x * cells).astype(int) == cell  # noqa: E731
-    return _by_line(subject, _with_density(lambda x: np.where(inside(x), ratio, (cells - ratio) / (cells - 1))))
+    return in_uniforms(subject, with_density(lambda x: np.where(inside(x), ratio, (cells - ratio) / (cells - 1))))
 
 
 def _other_atom(subject: Subject, size: float, trial: int, up: bool) -> Subject:
@@ -188,7 +158,7 @@ def _with_atom(subject: Subject, size: float, trial: int, up: bool) -> Subject:
 
 def _few(subject: Subject, size: float, trial: int, up: bool) -> Subject:
     values = max(int(1 / size), 1)
-    return _by_line(subject, lambda x: (np.floor(x * values) + 0.5) / values)
+    return in_uniforms(subject, lambda x: (np.floor(x * values) + 0.5) / values)
 
 
 def _small_calls(subject: Subject, size: float, trial: int, up: bool) -> Subject:
@@ -217,12 +187,6 @@ def _scaled(subject: Subject, size: float, trial: int, up: bool) -> Subject:
     return replace(subject, pdf=lambda x: factor * pdf(x))
 
 
-def _by_share(subject: Subject, size: float, trial: int, up: bool) -> Subject:
-    """Move a share of the samples of a table across its middle."""
-    sample, start, step = subject.sample, 0.5 - size * up, size if up else -size
-    return replace(subject, sample=lambda u: sample(np.where((u >= start) & (u < start + size), u + step, u)))
-
-
 @dataclass(frozen=True)
 class Plant:
     """A kind of finding: its name, a right subject, and that subject with an error of a given size.
@@ -240,18 +204,29 @@ class Plant:
 
 PLANTS = (
     Plant("distribution", line, _shifted),
-    Plant("distribution", table, _by_share),
-    Plant("smooth components", line, _smooth),
+    Plant("distribution", table, _shifted),
+    Plant("smooth components", line, polynomials),
+    Plant("smooth components", few, few_entries),
+    *(
+        plant
+        for right in (line_with_cdf, peak_with_cdf, peak_with_inverse)
+        for plant in (
+            Plant("distribution", right, _shifted),
+            Plant("smooth components", right, polynomials),
+            Plant("chi-square", right, _uneven_line, True),
+        )
+    ),
     Plant("chi-square", line, _uneven_line, True),
     Plant("scan", line, _missing),
     Plant("ends", line, _tail),
     Plant("chi-square, joint", square, _uneven_plane, True),
-    Plant("dependence of the axes", square, _dependent),
+    Plant("dependence of the axes", square, products),
     Plant("scan for patches", square, _patch),
     Plant("chi-square, fine joint", square, _uneven_plane, True),
     Plant("labels", box, _factor),
     Plant("labels in cells", box, _ripple),
-    Plant("labels along smooth functions", box, _straight_or_bent),
+    Plant("labels along smooth functions", box, straight_and_bent),
+    Plant("labels along smooth functions", wedge, least_seen),
     Plant("labels along the axes", volume, _uneven_axis, True),
     Plant("labels by level of the pdf", box, _factor),
     Plant("labels, largest cell", box, _one_cell, True),

@@ -23,7 +23,7 @@ from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.statistics.repeats import repeats_test
 from fogproof.checks.statistics.scan import scan, scan_ends
 from fogproof.checks.statistics.serial import Successions, in_units, serial_test
-from fogproof.checks.statistics.smooth import smooth
+from fogproof.checks.statistics.smooth import _integrals, smooth
 from fogproof.checks.statistics.tails import chi_square_detected
 from fogproof.checks.statistics.welch import difference_test
 
@@ -104,6 +104,33 @@ def test_of_smooth_components():
             counts = np.random.default_rng().multinomial(n, p / p.sum(), 300)
             as_often([smooth("", marginal, c, ALPHA).outcome == "rejected" for c in counts], most)
     assert stats.ncx2.sf(stats.chi2.isf(ALPHA, 4), 4, chi_square_detected(4, ALPHA, 0.01)) == pytest.approx(0.99)
+
+
+def table(mass):
+    edges = np.concatenate([[0.0], np.cumsum(mass)])
+    none = np.zeros(len(edges))
+    return Marginal("x", np.arange(len(edges)), edges, edges, none, none, none, True, Lookup.of(edges), lambda c: c)
+
+
+def test_of_smooth_components_where_few_cells_show_little_of_them():
+    """The combination that shows least moves the components by a third of its size: so much larger is what is stated."""
+    mass, n = np.array([0.05, 0.1, 0.7, 0.1, 0.05]), 20_000
+    means = np.diff(_integrals(table(mass).cdf), axis=1) / mass
+    shares, vectors = np.linalg.eigh((means * mass) @ means.T)
+    assert 0.1 < shares[0] < 0.11
+    size = smooth("", table(mass), np.round(n * mass).astype(int), ALPHA).resolution.value
+    for part, most in ((1.0, 1.0), (0.5, 0.5)):
+        p = mass * (1 + part * size * vectors[:, 0] @ means / np.sqrt(shares[0]))
+        counts = np.random.default_rng().multinomial(n, p / p.sum(), 300)
+        as_often([smooth("", table(mass), c, ALPHA).outcome == "rejected" for c in counts], most)
+
+
+@pytest.mark.parametrize(
+    ("mass", "shown"), [((0.01, 0.02, 0.94, 0.02, 0.01), "along 2 combinations"), ((0.001, 0.999), "")]
+)
+def test_what_cells_do_not_show_is_no_part_of_the_stated_misfit(mass, shown):
+    found = smooth("", table(np.array(mass)), np.round(20_000 * np.array(mass)).astype(int), ALPHA).resolution
+    assert shown in found.kind if shown else found is None
 
 
 def test_of_a_missing_band():

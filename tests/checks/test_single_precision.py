@@ -89,7 +89,7 @@ def test_right_narrow_lobes_pass(name, style):
 @pytest.mark.parametrize("name", WRONG)
 def test_wrong_narrow_lobes_are_found(name, style):
     sample, pdf = WRONG[name]
-    verdict = check_sampler(STYLES[style](sample), pdf, UnitSphere(), **{**SINGLE, "samples": 1_000_000})
+    verdict = sampler_check(STYLES[style](sample), pdf, UnitSphere(), **SINGLE).unexplained()
     assert verdict.outcome == "rejected", str(verdict)
     assert any(f.outcome == "rejected" and f.p_value is not None for f in verdict.findings)
 

@@ -10,7 +10,7 @@ from itertools import permutations
 
 import numpy as np
 
-from fogproof.checks.diagnosis import folds, frames, grids, half_vectors, holes, lobes, planes
+from fogproof.checks.diagnosis import folds, frames, grids, half_vectors, holes, lobes, planes, visible_normals
 from fogproof.checks.diagnosis.contrast import Density
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting, known_number, of_points
 
@@ -57,6 +57,7 @@ def _of_places(setting: Setting) -> Iterator[Hypothesis]:
     yield from _about_the_mean(setting)
     yield from planes.hypotheses(setting)
     yield from half_vectors.hypotheses(setting)
+    yield from visible_normals.hypotheses(setting)
     yield from frames.hypotheses(setting)
 
 

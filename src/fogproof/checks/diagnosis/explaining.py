@@ -9,7 +9,7 @@ from itertools import chain
 
 import numpy as np
 
-from fogproof.checks.diagnosis import directions, holes, lines, numbers, parts, regions, triangles, turns
+from fogproof.checks.diagnosis import caps, directions, holes, lines, numbers, parts, regions, triangles, turns
 from fogproof.checks.diagnosis.contrast import Contrast, Fit, claimed
 from fogproof.checks.diagnosis.fitting import TIE, Explained, judged, likeliest, nearest, sharpened
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting
@@ -125,10 +125,10 @@ def _candidates(
     if base.left < _MISFIT * math.sqrt(2 * base.freedom):
         # a small smooth misfit hides among many cells, and stands out against the hypothesis that it is
         many = setting if samples <= SIZES[-1] else setting_of(subject, min(_SMALL, samples), seed)
-        found = nearest(setting, many, [*of_domain(setting), *holes.hypotheses(setting)]) if many else []
+        found = nearest(setting, many, hypotheses(setting)) if many else []
         if many and found and found[0].fit.likelihood - many.contrast.likelihood(many.values) > _STANDS_OUT:
             return many, found
-    found = likeliest(setting, base, [*of_domain(setting), *holes.hypotheses(setting)])
+    found = likeliest(setting, base, hypotheses(setting))
     found = [each for each in found if each.score > found[0].score - _CLOSE]
     n = len(setting.contrast.x)
     many = setting_of(subject, min(SIZES[-1], samples), seed) if n < min(SIZES[-1], samples) else setting
@@ -137,7 +137,7 @@ def _candidates(
     better = [sharpened(many, each) for each in found]
     told = {_NUMBER.sub("", each.hypothesis.words) for each in found if not each.hypothesis.trials}
     if told:  # by numbers that samples gave, perhaps: many give better ones
-        again = [*of_domain(many), *holes.hypotheses(many)]
+        again = hypotheses(many)
         for order, each in enumerate(again):
             if not each.trials and _NUMBER.sub("", each.words) in told:
                 better.append(judged(many, each, 0.0, 0.0, -TIE * order / len(again)))
@@ -162,6 +162,11 @@ def contrasted(subject: Subject, samples: int, seed: int) -> tuple[Setting, Fit]
         if base.left > PLAIN or n >= samples:
             break
     return None if setting is None else (setting, base)
+
+
+def hypotheses(setting: Setting) -> list[Hypothesis]:
+    """Return what may have happened on such a domain, and what may happen on any."""
+    return [*of_domain(setting), *caps.hypotheses(setting), *holes.hypotheses(setting)]
 
 
 def of_domain(setting: Setting) -> Iterator[Hypothesis]:

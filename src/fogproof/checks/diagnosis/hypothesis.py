@@ -137,11 +137,14 @@ class Hypothesis:
         return self.words.format(value=number) + (f", {known}" if known else "")
 
 
-def known_number(table: dict[float, str]) -> Callable[[float, float], str]:
-    """Return what names a parameter that lies within three standard errors of a telling number, if these are small."""
+def known_number(table: dict[float, str], pinned: float = _PINNED) -> Callable[[float, float], str]:
+    """Return what names a parameter that lies within three standard errors of a telling number, if these are small.
+
+    pinned  the largest relative standard error of a parameter that is named: whole numbers are told apart by less
+    """
 
     def named(value: float, error: float) -> str:
-        if error > _PINNED * abs(value):
+        if error > pinned * abs(value):
             return ""
         near = {words for number, words in table.items() if abs(value - number) < 3 * error + 1e-3 * abs(number)}
         return near.pop() if len(near) == 1 else ""

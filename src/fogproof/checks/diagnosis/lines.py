@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from fogproof.checks.diagnosis import folds, stretches
+from fogproof.checks.diagnosis import families, folds, stretches
 from fogproof.checks.diagnosis.contrast import Density
 from fogproof.checks.diagnosis.grids import SHIFTS
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting, known_number
@@ -16,6 +16,7 @@ from fogproof.domains import HalfLine, Interval, RealLine
 
 _MIDDLE = 0.05  # of a standard deviation: a claim's middle is told no closer
 _MEASURED = 0.03  # relative error of a claim's deviation, told by points of the known law
+_WHOLE = 0.01  # relative standard error of a power that is whole
 _PARABOLA = 1e-6  # share of the variance of a logarithm that a parabola leaves
 SCALES = (0.001, 0.01, 0.1, 0.3, 0.5, 0.8, 0.95, 1.05, 1.25, 2.0, 3.0, 10.0, 100.0, 1000.0)
 _POWERS = (-2.0, -1.5, -1.0, -0.5, -0.2, 0.2, 0.5, 1.0, 1.5, 2.0)
@@ -35,7 +36,11 @@ _NAMES = {
     math.pi: "a factor of pi",
 }
 _EXPONENTS = known_number(
-    {1 / k if "taken" in words and "log" not in words else k: words for k, words in _NAMES.items()}
+    {
+        1 / k if "taken" in words and "log" not in words else k: words
+        for k, words in _NAMES.items()
+        if "binary" not in words  # a deviation of 1.2 is no logarithm of Box and Muller's (1958)
+    }
 )
 _EXPONENT = "these samples fit the pdf of an exponent {value} times as large"
 _STRETCHES = {1 / k if "log" in words else k: words for k, words in _NAMES.items()}
@@ -61,6 +66,8 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
         yield from folds.hypotheses(setting, "x")
         yield from _of_another_deviation(setting)
     yield from _of_another_scale(setting, origin)
+    if not isinstance(domain, Interval):
+        yield from families.hypotheses(setting)
     if isinstance(domain, HalfLine):
         yield Hypothesis(
             "wrong power",
@@ -146,7 +153,9 @@ def _of_another_measure(origin: float) -> Iterator[Hypothesis]:
         "these samples fit the pdf times a power of x, {value}",
         lambda s, a: lambda x: s.p(x) * np.maximum(np.abs(x - origin), 1e-12) ** a,
         _POWERS,
-        known_number({-1.0: "a factor x is missing", 1.0: "a factor x too many", -2.0: "a factor x^2 is missing"}),
+        known_number(
+            {-1.0: "a factor x is missing", 1.0: "a factor x too many", -2.0: "a factor x^2 is missing"}, _WHOLE
+        ),
         otherwise="wrong power",
         null=0.0,
     )

@@ -26,6 +26,7 @@ _DIGITS = 12  # of a coordinate that are no rounding
 _OFTEN = 10  # times that a point must come
 _INNERMOST = 16  # directions that may lie on one circle
 _FLAT = 1e-9  # distance from their plane, of their own distances or of one
+_NEARLY = 1e-6  # the same of few on an arc so short that rounding tilts the plane
 _BEYOND = 3.0  # standard errors of a probability that is none by chance
 _APART = 1e3  # times what rounding does: single values
 _CHANCE = 5.0  # standard errors that chance makes
@@ -93,10 +94,10 @@ def _cosine(columns: slice, axis: np.ndarray, x: np.ndarray) -> np.ndarray:
 def _ring(x: np.ndarray) -> np.ndarray | None:
     """Return the axis (3,) of the circle on which the innermost directions lie, None if there is no such circle."""
     ring = x[np.argsort(x @ x.mean(axis=0))[-_INNERMOST:]]
-    for _ in range(2):  # from few of them, which may lie on a short arc, to all
+    for flat in (_NEARLY, _FLAT, _FLAT):  # from few of them, which may lie on a short arc, to all
         middle = ring.mean(axis=0)
         _, lengths, axes = np.linalg.svd(ring - middle, full_matrices=False)
-        if not lengths[2] < _FLAT * lengths[1]:
+        if not lengths[2] < flat * lengths[1]:
             return None
         ring = x[np.abs((x - middle) @ axes[2]) < _FLAT]
     return np.asarray(axes[2] * np.sign(axes[2] @ middle))

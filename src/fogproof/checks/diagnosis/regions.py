@@ -8,7 +8,7 @@ from itertools import permutations
 
 import numpy as np
 
-from fogproof.checks.diagnosis import folds
+from fogproof.checks.diagnosis import correlations, folds
 from fogproof.checks.diagnosis.contrast import Density
 from fogproof.checks.diagnosis.grids import SHIFTS
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting, known_number, of_points
@@ -64,6 +64,7 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
         words = "a sine is missing: these samples are uniform in theta where the pdf means volume"
         yield Hypothesis("missing Jacobian", words, lambda s, _: lambda x: s.p(x) / _sine(x - center))
     if not np.isfinite(domain.measure):
+        yield from correlations.hypotheses(setting)
         yield Hypothesis(
             "wrong scale",
             "these samples fit the pdf stretched by {value}" + " in all columns" * isinstance(domain, Product),

@@ -25,6 +25,8 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
     for order, words in (([3, 0, 1, 2], "first for last"), ([1, 2, 3, 0], "last for first")):
         words = f"these samples fit the pdf with the real part {words}"
         yield Hypothesis("swapped axes", words, of_points(partial(np.take, indices=order, axis=1)))
+    words = "these samples fit the pdf with the columns 0 and 3 swapped: the real part has changed places with another"
+    yield Hypothesis("swapped axes", words, of_points(partial(np.take, indices=[3, 1, 2, 0], axis=1)))
     words = "these samples are points of a cube, normalised without rejection"
     yield Hypothesis("normalised cube", words, _over(lambda q: np.abs(q).max(axis=1) ** 4))
     for i, j in combinations(range(4), 2):
