@@ -176,6 +176,14 @@ def test_samples_are_drawn_until_they_show_the_cause():
     assert verdict.cause == "wrong scale"
 
 
+def test_an_early_look_does_not_end_what_the_map_alone_rejects():
+    verdict = check_sampler(
+        lambda u: -np.log1p(-u[:, 0]) / 1.0003, lambda t: np.exp(-t), HalfLine(0.0), dimensions=1, samples=300_000
+    )
+    assert {f.check for f in verdict.findings if f.outcome == "rejected"} == {NAME}
+    assert verdict.samples == 300_000 > verdict.settings["looks"][0]
+
+
 def test_no_right_sampler_of_the_catalogue_is_rejected():
     """All with a map of their own, by one look each."""
     asked = 0
