@@ -178,10 +178,10 @@ def test_samples_are_drawn_until_they_show_the_cause():
 
 def test_an_early_look_does_not_end_what_the_map_alone_rejects():
     verdict = check_sampler(
-        lambda u: -np.log1p(-u[:, 0]) / 1.0003, lambda t: np.exp(-t), HalfLine(0.0), dimensions=1, samples=300_000
+        lambda u: -np.log1p(-u[:, 0]) / 1.0003, lambda t: np.exp(-t), HalfLine(0.0), dimensions=1, samples=600_000
     )
     assert {f.check for f in verdict.findings if f.outcome == "rejected"} == {NAME}
-    assert verdict.samples == 300_000 > verdict.settings["looks"][0]
+    assert verdict.samples == 600_000 > verdict.settings["looks"][0]
 
 
 def test_no_right_sampler_of_the_catalogue_is_rejected():
