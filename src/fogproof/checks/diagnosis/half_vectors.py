@@ -29,6 +29,8 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
     if not (level > 0 and abs(length / level - 1) < _UNIT_LENGTH):
         return
     wo = _likeliest_view(setting, np.asarray(gradient) / length)
+    if setting.p(-wo[None])[0] > 0:  # where h is at right angles to wo: as of any density that goes to infinity there
+        return
     to = ", ".join(f"{c:.3f}" for c in wo)
     words = f"the Jacobian 1/(4 h . wo) of a reflection at half vectors h is missing, with wo = ({to})"
     yield Hypothesis(
