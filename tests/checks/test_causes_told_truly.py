@@ -14,8 +14,8 @@ from fogproof.checks.subject import Subject
 N = 60_000
 
 
-def verdict_of(sample, pdf, domain, dimensions=None, **options):
-    verdict = check_sampler(sample, pdf, domain, dimensions=dimensions, samples=N, **options)
+def verdict_of(sample, pdf, domain, dimensions=None, samples=N, **options):
+    verdict = check_sampler(sample, pdf, domain, dimensions=dimensions, samples=samples, **options)
     assert verdict.outcome == "rejected", str(verdict)
     return verdict
 
@@ -101,7 +101,7 @@ def test_a_cone_that_is_too_narrow_is_told_by_its_angle():
     def sample(u):
         return about(1 - u[:, 0] * (1 - 1 / np.sqrt(1 + 1 / 36)), TURN * u[:, 1]) @ AXES
 
-    verdict = verdict_of(sample, in_a_cone, UnitSphere(), 2)
+    verdict = verdict_of(sample, in_a_cone, UnitSphere(), 2, samples=100_000)
     assert verdict.cause == "missing tail", str(verdict)
     assert "no sample lies farther than 9.46" in verdict.diagnosis, verdict.diagnosis
 
@@ -139,6 +139,17 @@ def test_a_clamp_where_the_pdf_jumps_is_told():
     verdict = verdict_of(lambda u: np.minimum(layers(u), 0.7), layered, Interval(0, 2), 1, breaks=BREAKS)
     assert verdict.cause == "clamped", str(verdict)
     assert "of the samples have x = 0.7, and the pdf has 0.013" in verdict.diagnosis, verdict.diagnosis
+
+
+def test_a_clamp_to_where_the_pdf_is_none_is_told_beside_a_shift():
+    """A cell off, of a density that ends in a hole: samples lie there, and many at the end of the axis."""
+
+    def sample(u):
+        return np.minimum(np.sqrt(u[:, 0]) * 0.9 + 0.2, 1.0)
+
+    verdict = verdict_of(sample, lambda x: np.where(x < 0.9, 2 * x / 0.81, 0.0), Interval(0, 1), 1, breaks={"x": [0.9]})
+    assert "of the samples are 1.0" in verdict.diagnosis, str(verdict)
+    assert "shifted by 0.2" in verdict.diagnosis, verdict.diagnosis
 
 
 def test_a_region_that_is_never_reached_is_told_where():
