@@ -49,6 +49,16 @@ def test_an_infinite_end_that_holds_little_is_bounded_and_one_that_holds_much_is
     assert abs(wild.total - 1) <= wild.total_error, "2.5 % of its mass lies within one rounding of 1"
 
 
+@pytest.mark.parametrize("power", [0.5, 0.75, 0.9])
+def test_a_pole_that_no_number_meets_is_no_better_known(power):
+    def pole(c):
+        t = 1 - c[:, 0]
+        return np.where(t > 0, (1 - power) * np.maximum(t, 2.0**-53) ** -power, 0.0)
+
+    result = integrate(pole, np.zeros((1, 1)), np.ones((1, 1)), 1e-9, 200_000)
+    assert abs(result.total - 1) <= result.total_error
+
+
 def test_the_budget_is_kept_and_the_rest_of_the_error_told():
     rough = integrate(lambda c: np.sin(1e5 * c[:, 0]) ** 2, np.zeros((1, 1)), np.ones((1, 1)), 1e-12, 3000)
     assert rough.evaluations <= 3000

@@ -122,6 +122,11 @@ def striped(u):
     return x
 
 
+def by_its_own(sample, d):
+    """The same from uniforms of its own: nobody sees the map."""
+    return lambda rng, n: sample(rng.random((n, d)))
+
+
 def given_up(share):
     return lambda u: Draw(u[:, 0], valid=u[:, 1] >= share)
 
@@ -178,11 +183,18 @@ SAMPLERS = {
     "repeated points": (copied(1e-3), ones, LINE, {"dimensions": None}),
     "serial correlation": (
         lambda rng, n: np.concatenate([x := rng.random((n + 1) // 2), 2 * x % 1])[:n], ones, LINE, {"dimensions": None}),
-    "cdf against the pdf": (flat, lambda x: 1 + 1e-3 * np.cos(2 * np.pi * x), LINE, {"cdf": lambda x: x}),
+    "pdf against the map": (
+        lambda u: sphere(u * [1.0, 0.999]), lambda x: np.full(len(x), 0.25 / np.pi), UnitSphere(),
+        {"dimensions": 2, "axis": (0.6, 0.0, 0.8)}),
+    "pdf against the map, in one part": (
+        lambda u: np.where(u[:, 0] < 0.12, u[:, 0] + 0.12 * 1e-3 * np.sin(2 * np.pi * u[:, 0] / 0.12), u[:, 0]), ones, LINE, {}),
+    "cdf against the pdf": (
+        by_its_own(flat, 1), lambda x: 1 + 1e-3 * np.cos(2 * np.pi * x), LINE, {"cdf": lambda x: x, "dimensions": None}),
     "cdf against the pdf in the square": (
-        lambda u: u, lambda x: 1 + 0.02 * np.cos(2 * np.pi * x[:, 0]), UnitSquare(), {"cdf": lambda x: x, "dimensions": 2}),
-    "labels along smooth functions": (bent, ones, Box((0.0,) * 8, (1.0,) * 8), {"dimensions": 8}),
-    "labels along the axes": (striped, ones, Box((0.0,) * 8, (1.0,) * 8), {"dimensions": 8}),
+        by_its_own(np.asarray, 2), lambda x: 1 + 0.02 * np.cos(2 * np.pi * x[:, 0]), UnitSquare(),
+        {"cdf": lambda x: x, "dimensions": None}),
+    "labels along smooth functions": (by_its_own(bent, 8), ones, Box((0.0,) * 8, (1.0,) * 8), {"dimensions": None}),
+    "labels along the axes": (by_its_own(striped, 8), ones, Box((0.0,) * 8, (1.0,) * 8), {"dimensions": None}),
     "continuous part": (given_up(0.0), ones, LINE, {"dimensions": 2, "atoms": {0.5: 0.1}}),
 }  # fmt: skip
 ALSO = {
@@ -212,6 +224,7 @@ ROWS = {
     "writes into its uniforms": "function of its uniforms",
     "calls of ten rows": "function of its uniforms",
     "cdf against the pdf in the square": "cdf against the pdf",
+    "pdf against the map, in one part": "pdf against the map",
 }
 
 

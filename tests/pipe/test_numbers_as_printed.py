@@ -222,18 +222,18 @@ def test_the_same_seed_gives_the_same_samples(tmp_path):
         ("if answered == 3: out.write(GREETING)", "greets again"),
         (
             "if answered == 3: out.write(b'{\"n\": %d}\\n' % n); out.write(x.tobytes())",
-            "16384}' and what follows|answered once more|once too often",
+            r"\d+}' and what follows|answered once more|once too often",
         ),
         (
             "if answered == 3: out.write(b'{\"n\": %d}\\n' % n + x.tobytes()); out.flush(); time.sleep(0.05)",
-            "16384}' and what follows|answered once more|once too often",
+            r"\d+}' and what follows|answered once more|once too often",
         ),
     ],
 )
 def test_a_second_greeting_and_an_answer_too_early_are_called_so(tmp_path, answer, words):
     verdict = judged(program(tmp_path, answer.replace("GREETING", 'b\'{"fogproof": 1, "columns": ["x"]}\\n\''))).verdict
     assert verdict.cause == "broken protocol", verdict
-    assert re.search(words, str(verdict)), verdict
+    assert re.search(words, str(verdict)), str(verdict)
 
 
 def test_a_member_of_a_family_that_dies_is_said_to_die(tmp_path):

@@ -21,6 +21,7 @@ from fogproof.checks.edges import edge_uniforms, no_edge_uniforms
 from fogproof.checks.given_cdf import agreement, continuous_cdf, rosenblatt
 from fogproof.checks.hints import cube_map, cut, supported, why_not_inverse
 from fogproof.checks.jacobian import jacobian_agreement
+from fogproof.checks.map_density import map_density
 from fogproof.checks.mixture import MixtureTest
 from fogproof.checks.normalisation import albedo, mean_cosine
 from fogproof.checks.pilot import LARGE_PILOT, PILOT, Pilot, draw_pilot
@@ -112,6 +113,7 @@ def _questions(subject: Subject, pilot: Pilot, seed: int) -> list[Finding]:
     else:
         uniforms = subject.uniforms(batch_generator(seed, "samples", 0, 0), PILOT)
         findings += [*purity(subject, uniforms), edge_uniforms(subject, pilot.labels)]
+        findings += map_density(subject, pilot.points, seed)
     if subject.reference is not None and len(pilot.points):
         findings.append(reference_agreement(subject, pilot.points))
     findings += pdf_twice(subject, pilot.points)

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from fogproof.checks import map_density
 from fogproof.checks.declared import declared, unchecked
 from fogproof.checks.diagnosis import diagnosed, likely_cause
 from fogproof.checks.escalation import EARLY, Stage, doubtful, judged, stages, total_weight
@@ -136,7 +137,8 @@ class SamplerCheck:
             enough = int(np.searchsorted(np.cumsum(self.sizes), look.samples)) + 1
             tally = tally.merged(self._drawn(range(len(tally.batches), enough)))
             findings = self._judged(tally, look)
-            rejected = any(f.outcome == "rejected" for f in findings)
+            # What the map shows needs no samples, but its cause does: they are drawn until they show it too.
+            rejected = any(f.outcome == "rejected" and f.check != map_density.NAME for f in findings)
             if rejected or (look.final and not doubtful(findings, self.alpha * look.share)):
                 break
         return self._verdict(findings, tally)

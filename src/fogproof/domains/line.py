@@ -17,6 +17,10 @@ from fogproof.validate import number
 
 _LEAST_INDEX = 0.02  # of a tail: a power less is not told from it in floating point
 _QUARTILES = 2 * math.log(3.0)  # distance of the quartiles of log t, times b
+_FAR = (
+    1 - 2.0**-8,
+    1 - 2.0**-10,
+)  # shares of the points below two places far out, whose distance in log t tells the tail
 
 
 @dataclass(frozen=True)
@@ -28,12 +32,15 @@ class Tail:
 
     @staticmethod
     def of(t: np.ndarray) -> Tail:
-        """Return the law with the median and, in logarithms, at least the spread of the distances t (n,)."""
+        """Return the law with the median and, in logarithms, at least the spread of the distances t (n,), near it and far out.
+
+        A bulk may be narrow and its tail heavy all the same: a lighter law would not come near the last of its mass.
+        """
         t = t[np.isfinite(t) & (t > 0)]
         if len(t) < 4:
             return Tail()
-        low, middle, high = np.quantile(np.log(t), [0.25, 0.5, 0.75])
-        index = _QUARTILES / max(high - low, _QUARTILES)
+        low, middle, high, far, farther = np.quantile(np.log(t), [0.25, 0.5, 0.75, *_FAR])
+        index = min(1.0, _QUARTILES / max(high - low, _QUARTILES), np.log(4.0) / max(farther - far, np.log(4.0)))
         return Tail(float(np.exp(middle)), max(float(index), _LEAST_INDEX))
 
     def cdf(self, t: np.ndarray) -> np.ndarray:
@@ -41,10 +48,22 @@ class Tail:
         with np.errstate(over="ignore", divide="ignore"):
             return np.asarray(1 / (1 + (t / self.m) ** -self.b))
 
+    def survival(self, t: np.ndarray) -> np.ndarray:
+        """Return 1 - F(t), without loss where it is small."""
+        with np.errstate(over="ignore", divide="ignore"):
+            return np.asarray(1 / (1 + (t / self.m) ** self.b))
+
     def quantile(self, u: np.ndarray) -> np.ndarray:
         """Return t with F(t) = u; numbers beyond the largest double become it."""
+        return self._at_odds(u, 1 - u)
+
+    def survived(self, u: np.ndarray) -> np.ndarray:
+        """Return t with 1 - F(t) = u, the same."""
+        return self._at_odds(1 - u, u)
+
+    def _at_odds(self, below: np.ndarray, beyond: np.ndarray) -> np.ndarray:
         with np.errstate(over="ignore", divide="ignore"):
-            return np.asarray(np.minimum(self.m * (u / (1 - u)) ** (1 / self.b), np.finfo(float).max))
+            return np.asarray(np.minimum(self.m * (below / beyond) ** (1 / self.b), np.finfo(float).max))
 
     def density(self, t: np.ndarray) -> np.ndarray:
         """Return F'(t), finite at t = 0 because a distance is no smaller than the smallest normal number."""
@@ -140,16 +159,20 @@ class RealLine:
         return np.isfinite(x)
 
     def law(self, pilot: np.ndarray) -> Law:
-        """Return a log-logistic law of the distance from the pilot's median, on both sides alike."""
+        """Return a log-logistic law of the distance from the pilot's median, on both sides alike.
+
+        Far to the left coordinates are as fine as numbers near 0, far to the right as those near 1.
+        """
         middle = float(np.median(pilot)) if len(pilot) else 0.0
         tail = Tail.of(np.abs(pilot - middle))
 
         def place(u: np.ndarray) -> np.ndarray:
-            s = 2 * u[:, 0] - 1
-            return middle + np.sign(s) * tail.quantile(np.abs(s))
+            left = u[:, 0] < 0.5
+            t = tail.survived(2 * np.where(left, u[:, 0], 1 - u[:, 0]))
+            return middle + np.where(left, -t, t)
 
         def coordinates(x: np.ndarray, v: np.ndarray) -> np.ndarray:
-            t = x - middle
-            return (0.5 + 0.5 * np.sign(t) * tail.cdf(np.abs(t)))[:, None]
+            beyond = 0.5 * tail.survival(np.abs(x - middle))
+            return np.where(x < middle, beyond, 1 - beyond)[:, None]
 
         return Law(("x",), place, coordinates, lambda x: 0.5 * tail.density(np.abs(x - middle)))

@@ -205,8 +205,10 @@ def _real_line(pilot: np.ndarray) -> Chart:
         return center + spread * (t - 0.5) / np.sqrt(t * (1 - t))
 
     def count(x: np.ndarray) -> tuple[np.ndarray, ...]:
-        z = (x - center) / spread
-        return (0.5 + 0.5 * z / np.sqrt(1 + z * z),)
+        z = np.abs(x - center) / spread
+        with np.errstate(over="ignore"):
+            beyond = 0.5 / (1 + z * z + z * np.sqrt(1 + z * z))  # (1 - z / sqrt(1 + z^2)) / 2 without loss
+        return (np.where(x < center, beyond, 1 - beyond),)
 
     def jacobian(c: np.ndarray) -> np.ndarray:
         return 0.25 * spread * (c[:, 0] * (1 - c[:, 0])) ** -1.5

@@ -207,9 +207,10 @@ def _rule(
     raw = differences.sum(axis=-1)
     ratio = np.divide(200 * raw, scale, out=np.zeros_like(raw), where=scale > 0)
     error = np.where(ratio < 1, scale * ratio**1.5, 4 * raw) + _ROUNDING * absolute
-    # A NaN or infinity must not pass for an accurate value; in a box too small to be halved it is an end of the domain.
+    # A NaN or infinity must not pass for an accurate value. A box too small to be halved is an end of the domain, or a pole that
+    # numbers are too coarse for: what is nearer than its nodes they have not seen.
     known = _smallest(low, high) & (absolute > 0)
-    error = np.where(unknown, np.where(known, 8 * absolute, np.inf), error) * volume
+    error = np.where(known, 8 * absolute, np.where(unknown, np.inf, error)) * volume
     return values, error, np.argmax(differences, axis=-1)
 
 

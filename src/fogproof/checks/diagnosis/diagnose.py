@@ -27,6 +27,7 @@ from fogproof.checks.diagnosis.patience import OutOfTimeError, limited
 from fogproof.checks.diagnosis.periods import repeated
 from fogproof.checks.diagnosis.points import few_values, single_points
 from fogproof.checks.diagnosis.together import dependent
+from fogproof.checks.map_density import NAME as MAP
 from fogproof.checks.statistics.repeats import KEPT
 from fogproof.checks.streams import batch_generator
 from fogproof.checks.subject import Subject
@@ -68,6 +69,8 @@ def diagnosed(
     cause = likely_cause(findings)
     rejected = [f for f in findings if f.outcome == "rejected"]
     statistical = any(f.p_value is not None and f.cause in _STATISTICAL for f in rejected)
+    if {f.check for f in rejected} == {MAP}:  # samples do not show it: they cannot tell its cause
+        return cause, ""
     if cause == "negative pdf":
         return cause, _exponential(subject, samples, seed)
     if cause == "repeated samples":

@@ -1,0 +1,204 @@
+"""The pdf against the sampler's own map: right ones of every sort are left alone, and what samples do not show is seen."""
+
+import numpy as np
+import pytest
+
+from fogproof import Box, Discrete, Draw, HalfLine, Interval, Triangle, UnitDisk, UnitSphere, UnitSquare, check_sampler
+from fogproof.catalogue import SamplerCase
+from fogproof.checks.map_density import NAME, map_density
+from fogproof.checks.subject import Subject
+from fogproof.verify import select
+
+LINE = Interval(0.0, 1.0)
+
+
+def subject(sample, pdf, domain=LINE, dimensions=1, **more):
+    return Subject(sample, pdf, domain, dimensions, **more)
+
+
+def found(sample, pdf, domain=LINE, dimensions=1, seed=1, **more):
+    """Return the one finding, None where the question is not put."""
+    pilot = domain.law(np.empty((0, *domain.shape))).place(
+        np.random.default_rng(seed).random((500, 4))[:, : dimensions or 1]
+    )
+    return next(iter(map_density(subject(sample, pdf, domain, dimensions, **more), pilot, seed)), None)
+
+
+def ones(x):
+    return np.ones(len(x))
+
+
+def quarter(x):
+    return np.full(len(x), 0.25 / np.pi)
+
+
+def sphere(u):
+    sine, phi = 2 * np.sqrt(u[:, 0] * (1 - u[:, 0])), 2 * np.pi * u[:, 1]
+    return np.stack([sine * np.cos(phi), sine * np.sin(phi), 1 - 2 * u[:, 0]], axis=-1)
+
+
+def disk(u):
+    r, phi = np.sqrt(u[:, 0]), 2 * np.pi * u[:, 1]
+    return np.stack([r * np.cos(phi), r * np.sin(phi)], axis=-1)
+
+
+def folded(u):
+    """The corner beyond the diagonal is turned onto the triangle: two uniforms lead to each point."""
+    return np.where((u.sum(axis=1) > 1)[:, None], 1 - u, u)
+
+
+def one_of_two(u):
+    """Two exponential laws, chosen by the uniform that is stretched and used again."""
+    first = u[:, 0] < 0.3
+    v = np.where(first, u[:, 0] / 0.3, (u[:, 0] - 0.3) / 0.7)
+    return -np.log1p(-v) / np.where(first, 5.0, 0.5)
+
+
+def pdf_of_two(x):
+    return 0.3 * 5 * np.exp(-5 * x) + 0.7 * 0.5 * np.exp(-0.5 * x)
+
+
+def table_of_the_inverse(u):
+    """Straight lines between 200 places of the inverse cdf of 2 x: in each cell the samples are even, as the pdf is not."""
+    xi = np.linspace(0, 1, 201)
+    return np.interp(u[:, 0], xi, np.sqrt(xi))
+
+
+_SPECKLED = np.random.default_rng(5).random(1 << 20) + 0.5
+_SPECKLED /= _SPECKLED.mean()
+_SUMS = np.concatenate([[0.0], np.cumsum(_SPECKLED)]) / len(_SPECKLED)
+
+
+def speckled(u):
+    """A table of a million entries, whose cells no step of a derivative can tell from each other."""
+    return np.interp(u[:, 0], _SUMS, np.linspace(0, 1, len(_SUMS)))
+
+
+def pdf_of_the_speckled(x):
+    return _SPECKLED[np.clip((x * len(_SPECKLED)).astype(int), 0, len(_SPECKLED) - 1)]
+
+
+def stopped(u):
+    return np.minimum(-np.log1p(-u[:, 0]), 1.0)
+
+
+RIGHT = {
+    "sphere": (sphere, quarter, UnitSphere(), 2, {}),
+    "disk": (disk, lambda x: np.full(len(x), 1 / np.pi), UnitDisk(), 2, {}),
+    "triangle": (folded, lambda x: np.full(len(x), 2.0), Triangle((0, 0), (1, 0), (0, 1)), 2, {}),
+    "two laws": (one_of_two, pdf_of_two, HalfLine(0.0), 1, {}),
+    "table of the inverse": (table_of_the_inverse, lambda x: 2 * x, LINE, 1, {}),
+    "an atom": (stopped, lambda t: np.exp(-t), HalfLine(0.0), 1, {"atoms": {1.0: float(np.exp(-1))}}),
+    "given up": (lambda u: Draw(u[:, 0], valid=u[:, 0] < 0.7), lambda x: np.where(x < 0.7, 1.0, 0.0), LINE, 1, {}),
+    "given up, renormalised": (
+        lambda u: Draw(u[:, 0], valid=u[:, 0] < 0.7), lambda x: np.where(x < 0.7, 1 / 0.7, 0.0), LINE, 1, {}),
+    "32 bits": (lambda u: np.floor(u[:, 0] * 2**32) / 2**32, ones, LINE, 1, {"uniform_bits": 32}),
+    "a uniform that is not used": (lambda u: u[:, 1], ones, LINE, 2, {}),
+    "four axes": (lambda u: np.sqrt(u), lambda x: np.prod(2 * x, axis=1), Box((0.0,) * 4, (1.0,) * 4), 4, {}),
+    "single precision": (
+        lambda u: sphere(u.astype(np.float32)).astype(np.float32), quarter, UnitSphere(), 2, {"precision": "float32"}),
+    "singular": (lambda u: u[:, 0] ** 10, lambda x: 0.1 * x**-0.9, LINE, 1, {}),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", RIGHT)
+def test_right_ones_keep_the_inequality(name):
+    sample, pdf, domain, dimensions, more = RIGHT[name]
+    for seed in range(5):
+        finding = found(sample, pdf, domain, dimensions, seed, **more)
+        assert finding is not None
+        assert finding.outcome == "not rejected", finding.message
+
+
+def test_a_table_finer_than_any_step_is_not_judged_by_its_average():
+    """What is rough at every step may have a derivative that three steps agree about: none of the table's own."""
+    for seed in range(5):
+        finding = found(speckled, pdf_of_the_speckled, seed=seed)
+        assert finding is None or finding.outcome == "not rejected", finding.message
+
+
+WRONG = {
+    "a thousandth of the turn is never drawn": (lambda u: sphere(u * [1, 0.999]), quarter, UnitSphere(), 2, {}),
+    "a constant": (lambda u: u[:, 0], lambda x: np.full(len(x), 0.9999), LINE, 1, {}),
+    "another rate": (lambda u: -np.log1p(-u[:, 0]) / 1.001, lambda t: np.exp(-t), HalfLine(0.0), 1, {}),
+    "no square root": (lambda u: disk(u**1.01), lambda x: np.full(len(x), 1 / np.pi), UnitDisk(), 2, {}),
+    "in a twelfth": (lambda u: np.where(u[:, 0] < 1 / 12, 12 * u[:, 0] ** 2, u[:, 0]), ones, LINE, 1, {}),
+    "single precision": (
+        lambda u: sphere(u.astype(np.float32) * np.float32([1, 0.998])).astype(np.float32), quarter, UnitSphere(), 2,
+        {"precision": "float32"}),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_wrong_ones_break_it(name):
+    sample, pdf, domain, dimensions, more = WRONG[name]
+    for seed in range(5):
+        assert found(sample, pdf, domain, dimensions, seed, **more).outcome == "rejected"
+
+
+@pytest.mark.parametrize(
+    ("sample", "domain", "dimensions"),
+    [
+        (lambda rng, n: rng.random(n), LINE, None),
+        (lambda u: np.where(u[:, 0] < 0.3, u[:, 1], u[:, 1] ** 2), LINE, 2),
+        (lambda u: u[:, [0, 0]], UnitSquare(), 1),
+        (lambda u: np.floor(10 * u[:, 0]).astype(int), Discrete(10), 1),
+        (lambda u: np.floor(u[:, 0] * 64) / 64, LINE, 1),
+        (lambda u: (np.sin(1e9 * u[:, 0]) * 1e4) % 1, LINE, 1),
+    ],
+    ids=["generator", "choice", "curve", "table", "stairs", "hash"],
+)
+def test_nothing_is_said_without_a_derivative(sample, domain, dimensions):
+    assert found(sample, ones, domain, dimensions) is None
+
+
+def test_the_tolerance_is_what_it_is_said_to_be():
+    """Of a constant factor, which is no matter of chance: twice the tolerance is found, half of it is not."""
+    for factor, outcome in ((1 - 4e-5, "rejected"), (1 - 1e-5, "not rejected")):
+        assert found(lambda u: u[:, 0], lambda x, f=factor: np.full(len(x), f)).outcome == outcome
+
+
+def test_what_samples_do_not_show_is_rejected_all_the_same():
+    verdict = check_sampler(
+        lambda u: sphere(u * [1, 0.999]), quarter, UnitSphere(), dimensions=2, samples=20_000, axis=(0.6, 0, 0.8)
+    )
+    assert [f.check for f in verdict.findings if f.outcome == "rejected"] == [NAME]
+    assert "1.001 times as dense" in str(verdict)
+    assert "no uniforms lead to" in str(verdict)
+
+
+def test_samples_are_drawn_until_they_show_the_cause():
+    """The map shows a rate of 1.06 at once; which rate it is takes samples, and they are not spared."""
+    verdict = check_sampler(
+        lambda u: -np.log1p(-u[:, 0]) / 1.06, lambda t: np.exp(-t), HalfLine(0.0), dimensions=1, samples=100_000
+    )
+    assert {f.check for f in verdict.findings if f.outcome == "rejected"} > {NAME}
+    assert verdict.cause == "wrong scale"
+
+
+def test_an_early_look_does_not_end_what_the_map_alone_rejects():
+    verdict = check_sampler(
+        lambda u: -np.log1p(-u[:, 0]) / 1.0003, lambda t: np.exp(-t), HalfLine(0.0), dimensions=1, samples=600_000
+    )
+    assert {f.check for f in verdict.findings if f.outcome == "rejected"} == {NAME}
+    assert verdict.samples == 600_000 > verdict.settings["looks"][0]
+
+
+def test_no_right_sampler_of_the_catalogue_is_rejected():
+    """All with a map of their own, by one look each."""
+    asked = 0
+    for case in select(["cosines", "directions/henyey-greenstein", "free-path", "equiangular"]):
+        if not isinstance(case, SamplerCase):
+            continue
+        s = case.make()
+        if s.dimensions is None:
+            continue
+        precision = case.options.get("precision", "float64")
+        made = subject(
+            s.sample, s.pdf, s.domain, s.dimensions, atoms=dict(getattr(s, "atoms", {})), precision=precision
+        )
+        points = made.draw(np.random.default_rng(2), 2000).x
+        for finding in map_density(made, points, 2):
+            assert finding.outcome == "not rejected", f"{case.name}: {finding.message}"
+            asked += 1
+    assert asked > 30
