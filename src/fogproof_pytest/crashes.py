@@ -26,7 +26,7 @@ def begin(node: Any) -> None:
         number, path = tempfile.mkstemp(prefix="fogproof-")
         opened = node.config.stash.setdefault(_SESSIONS, {})
         if not opened:
-            node.config.add_cleanup(lambda: [os.close(opened.popitem()[1]) for _ in tuple(opened)])
+            node.config.add_cleanup(lambda: _close(opened))
         opened[node.gateway.id] = number
         node.workerinput[_PATH] = path
 
@@ -45,7 +45,11 @@ def keeper(config: pytest.Config) -> Callable[[str, dict[str, Any] | None, str],
     number = config.stash.get(_WORKERS, None)
     if number is None:
         return lambda *_: None
-    return lambda *found: (os.write(number, json.dumps(found).encode() + b"\n"), None)[1]
+
+    def keep(*found: object) -> None:
+        os.write(number, json.dumps(found).encode() + b"\n")
+
+    return keep
 
 
 def found(node: Any, test: str) -> list[tuple[Any, ...]]:
@@ -57,3 +61,8 @@ def found(node: Any, test: str) -> list[tuple[Any, ...]]:
     with os.fdopen(os.dup(number), "rb") as file:
         whole = [json.loads(line) for line in file if line.endswith(b"\n")]
     return [(of, place, verdict, why) for place, (of, verdict, why) in enumerate(w for w in whole if w[0] == test)]
+
+
+def _close(opened: dict[str, int]) -> None:
+    while opened:
+        os.close(opened.popitem()[1])
