@@ -17,6 +17,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, NoReturn
 
+from fogproof.catalogue.cases import LONGEST_NAME
 from fogproof.checks import Verdict
 from fogproof.checks.arguments import seed_of, shared_among
 from fogproof.checks.json_values import jsonable
@@ -98,6 +99,8 @@ class Run:
         """Keep a case under a new name and return its place, from 1; also threads at the same time get different ones."""
         if not isinstance(name, str):
             raise InvalidValueError("name", "must be a string", name)
+        if len(name) > LONGEST_NAME:
+            raise InvalidValueError("name", f"must have at most {LONGEST_NAME} characters", name)
         if self._cases.setdefault(name, case) is not case:
             raise InvalidValueError("name", "must be new in the run", name)
         self._keep(name, case)

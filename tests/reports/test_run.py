@@ -99,6 +99,8 @@ def test_an_interrupted_check_is_not_judged(interruptible):
     [
         (lambda: fogproof.Run(seed=-1), "seed"),
         (lambda: fogproof.Run().check(3, fogproof.check_estimator, uniform, 0.5), "name must be a string"),
+        (lambda: fogproof.Run().check("x" * 201, fogproof.check_estimator, uniform, 0.5), "must have at most 200"),
+        (lambda: fogproof.Run().add("x" * 201, fogproof.check_estimator(uniform, 0.5, samples=100)), "at most 200"),
         (lambda: fogproof.Run().add("x", 3), "verdict must be a Verdict"),
         (lambda: fogproof.Run().add(fogproof.check_estimator(uniform, 0.5, samples=100), "x"), "must be a"),
     ],
