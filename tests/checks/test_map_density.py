@@ -94,6 +94,9 @@ RIGHT = {
         lambda u: Draw(u[:, 0], valid=u[:, 0] < 0.7), lambda x: np.where(x < 0.7, 1 / 0.7, 0.0), LINE, 1, {}),
     "32 bits": (lambda u: np.floor(u[:, 0] * 2**32) / 2**32, ones, LINE, 1, {"uniform_bits": 32}),
     "a uniform that is not used": (lambda u: u[:, 1], ones, LINE, 2, {}),
+    "a uniform that matters once in ten thousand times": (
+        lambda u: u[:, 1] * np.where(u[:, 0] < 1e-4, 0.5, 1.0),
+        lambda x: (1 - 1e-4) + np.where(x < 0.5, 2e-4, 0.0), LINE, 2, {}),
     "four axes": (lambda u: np.sqrt(u), lambda x: np.prod(2 * x, axis=1), Box((0.0,) * 4, (1.0,) * 4), 4, {}),
     "single precision": (
         lambda u: sphere(u.astype(np.float32)).astype(np.float32), quarter, UnitSphere(), 2, {"precision": "float32"}),

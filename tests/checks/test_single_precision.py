@@ -134,6 +134,16 @@ def test_a_given_cdf_does_not_know_the_points_better_than_they_are(hint, always)
     assert wrong.unexplained().outcome == "rejected"
 
 
+@pytest.mark.parametrize("hint", ["cdf", "inverse"])
+def test_points_that_rounding_puts_onto_a_pole_have_no_azimuth_of_their_own(hint):
+    """6 % of the samples of g = 0.999 by the textbook: a map of them to the unit cube has one azimuth for all."""
+    given, single = {hint: cumulated(0.999)}, SINGLE | {"samples": 100_000}
+    right = check_sampler(always_single(lobe(0.999, 1, True)), lobe_pdf(0.999), UnitSphere(), **single, **given)
+    assert right.outcome != "rejected", str(right)
+    wrong = sampler_check(always_single(lobe(0.999, 0.8, True)), lobe_pdf(0.999), UnitSphere(), **single, **given)
+    assert wrong.unexplained().outcome == "rejected"
+
+
 def test_a_steep_pdf_in_double_precision_is_integrated_as_one():
     """Its change over a rounding of the point is no noise of its own: the expected masses are known."""
     subject = Subject(lobe(0.99, 1, True), lobe_pdf(0.99), UnitSphere(), 2, precision="float32")

@@ -36,6 +36,7 @@ _AGREE: dict[Precision, float] = {"float64": 1e-4, "float32": 1e-3}  # relative,
 _TOLERANCE: dict[Precision, float] = {"float64": 2e-5, "float32": 4e-4}  # of an average, never rejected
 _DOUBT = 8.0  # standard errors of an average
 _ENOUGH = 0.05  # of the uniforms: with fewer derivatives nothing is said
+_RARE = 21.0  # over the uniforms looked at: what has that probability is met by one of them, but for a chance of 1e-9
 _FEW = 8  # points of a part that have one
 _MOST_AXES = 16
 
@@ -44,13 +45,20 @@ _MOST_AXES = 16
 class MapDensity:
     """What was seen at uniforms u (n, d) that lead to points x: pdf times derivative (n,), and what steps disagree by (n,).
 
-    The derivative is NaN where it is not believed; `lost` counts the points without a pdf, such as those of an atom.
+    The derivative is NaN where it is not believed. Other uniforms may still matter with the probability `rare`, and lead elsewhere.
     """
 
     u: np.ndarray
     x: np.ndarray
     volume: np.ndarray
     doubt: np.ndarray
+    rare: float
+
+    @property
+    def believed(self) -> MapDensity:
+        """What was seen at points that have a derivative."""
+        told = ~np.isnan(self.volume)
+        return MapDensity(self.u[told], self.x[told], self.volume[told], self.doubt[told], self.rare)
 
 
 def map_density(subject: Subject, points: np.ndarray, seed: int) -> list[Finding]:
@@ -63,14 +71,14 @@ def map_density(subject: Subject, points: np.ndarray, seed: int) -> list[Finding
     found = _seen(subject, law, seed)
     if found is None:
         return []
-    believed = ~np.isnan(found.volume)
-    if np.count_nonzero(believed) < max(_ENOUGH * len(believed), _FEW):
+    believed = found.believed
+    if len(believed.u) < max(_ENOUGH * len(found.u), _FEW):
         return []
-    return [_judged(subject, MapDensity(*(part[believed] for part in vars(found).values())))]
+    return [_judged(subject, believed)]
 
 
 def _judged(subject: Subject, seen: MapDensity) -> Finding:
-    tolerance = _TOLERANCE[subject.precision]
+    tolerance = _TOLERANCE[subject.precision] + seen.rare
     worst, where = 0.0, np.empty(0, dtype=int)
     for part in [np.arange(len(seen.u)), *_parts(seen.u)]:
         lacking = 1 - seen.volume[part]
@@ -119,10 +127,11 @@ def _seen(subject: Subject, law: Law, seed: int) -> MapDensity | None:
     axes = [column for column in range(u.shape[1]) if _matters(subject, law, u, column, at)]
     if len(axes) != len(law.axes):
         return None
+    rare = _RARE / len(u) if len(axes) < u.shape[1] else 0.0
     u, x = u[good], x[good]
     claimed = subject.density(x) / law.density(x)
     derivative, doubt = _derivatives(subject, law, u, axes)
-    return MapDensity(u[:, axes], x, claimed * derivative, doubt)
+    return MapDensity(u[:, axes], x, claimed * derivative, doubt, rare)
 
 
 def _matters(subject: Subject, law: Law, u: np.ndarray, column: int, at: np.ndarray) -> bool:

@@ -83,7 +83,7 @@ class MixtureTest:
         middle = 0.5 * (self.tree.low + self.tree.high)
         half = np.full(middle.shape, 0.5)
         x = self.law.place(middle)
-        near = [self.law.coordinates(y, half) for y in (x, *self.subject.nudged(x))]
+        near = [self.law.coordinates(y, half) for y in (x, *self._beside(x))]
         step = np.max([np.abs(u - middle) for u in near], axis=0)
         kept = replace(self, tree=self.tree.without(np.any(sides < _THIN * step, axis=1)))
         across = kept._across(points[:_CHECKED])
@@ -191,13 +191,17 @@ class MixtureTest:
         return Sums.of(labels, w, leaf, len(self.tree.share), integrated, self._weighed(coordinates, labels, w))
 
     def _across(self, points: np.ndarray) -> np.ndarray:
-        """Return (n,) which points rounding may move into another cell of the histogram."""
+        """Return (n,) which points lie so near another cell of the histogram that rounding, or the known law, confuses them."""
         k = len(self.law.axes)
         leaf = self.tree.leaf(self.law.coordinates(points, np.full((len(points), k), 0.5)))
         across = np.zeros(len(points), dtype=bool)
-        for near in self.subject.nudged(points):
+        for near in self._beside(points):
             across |= self.tree.leaf(self.law.coordinates(near, np.full((len(near), k), 0.5))) != leaf
         return across
+
+    def _beside(self, points: np.ndarray) -> list[np.ndarray]:
+        """Return copies of the points as far off as rounding moves them, and as the points of the known law are apart."""
+        return [*self.subject.nudged(points), *self.law.neighbours(points)]
 
     def known(self, rng: np.random.Generator, n: int) -> tuple[np.ndarray, np.ndarray]:
         """Return n points of the known law and its density (n,) there."""

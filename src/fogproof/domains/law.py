@@ -14,6 +14,9 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 
+_BESIDE = 2.0  # steps of a coordinate: uniform numbers below 1/2 may be as coarse as those above
+_LAST = 1 - 2.0**-53  # below 1
+
 
 @dataclass(frozen=True)
 class Law:
@@ -32,6 +35,21 @@ class Law:
     coordinates: Callable[[np.ndarray, np.ndarray], np.ndarray]
     density: Callable[[np.ndarray], np.ndarray]
     stepped: bool = False
+
+    def neighbours(self, x: np.ndarray) -> list[np.ndarray]:
+        """Return the points of the law beside n points, at both sides along each axis, as far as its coordinates are coarse.
+
+        Around 0, where coordinates do not end, numbers lie much closer.
+        """
+        u = self.coordinates(x, np.full((len(x), len(self.axes)), 0.5))
+        beside = []
+        for axis in range(len(self.axes)):
+            step = _BESIDE * np.spacing(u[:, axis])
+            for moved in (u[:, axis] - step, u[:, axis] + step):
+                there = u.copy()
+                there[:, axis] = np.clip(moved, 0.0, _LAST)
+                beside.append(self.place(there))
+        return beside
 
 
 @runtime_checkable

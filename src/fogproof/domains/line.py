@@ -17,10 +17,9 @@ from fogproof.validate import number
 
 _LEAST_INDEX = 0.02  # of a tail: a power less is not told from it in floating point
 _QUARTILES = 2 * math.log(3.0)  # distance of the quartiles of log t, times b
-_FAR = (
-    1 - 2.0**-8,
-    1 - 2.0**-10,
-)  # shares of the points below two places far out, whose distance in log t tells the tail
+_CLOSE = 2.0**-30  # of the distance of the quartiles: so near to 0
+_CROWD = 2.0**-10  # of the points lie if there is a pole
+_FAR = (1 - 2.0**-8, 1 - 2.0**-10)  # shares of the points below two places, whose distance in log t tells the tail
 
 
 @dataclass(frozen=True)
@@ -78,6 +77,18 @@ def _typical(t: np.ndarray) -> float:
     t = t[np.isfinite(t)]
     positive = t[t > 0]
     return float(np.quantile(positive, 0.25, method="lower")) if len(t) and 2 * len(positive) >= len(t) else 0.0
+
+
+def centre(pilot: np.ndarray) -> float:
+    """Return about where coordinates of the real line lie on both sides: the median of the points (n,), or 0 if they crowd there.
+
+    Numbers lie closer around 0 than anywhere else, and coordinates about their centre alone follow them.
+    """
+    if len(pilot) == 0:
+        return 0.0
+    low, middle, high = np.quantile(pilot, [0.25, 0.5, 0.75])
+    crowd = (pilot != 0) & (np.abs(pilot) <= _CLOSE * (high - low))
+    return 0.0 if np.mean(crowd) > _CROWD else float(middle)
 
 
 @dataclass(frozen=True)
@@ -159,11 +170,11 @@ class RealLine:
         return np.isfinite(x)
 
     def law(self, pilot: np.ndarray) -> Law:
-        """Return a log-logistic law of the distance from the pilot's median, on both sides alike.
+        """Return a log-logistic law of the distance from the centre of the pilot, on both sides alike.
 
         Far to the left coordinates are as fine as numbers near 0, far to the right as those near 1.
         """
-        middle = float(np.median(pilot)) if len(pilot) else 0.0
+        middle = centre(pilot)
         tail = Tail.of(np.abs(pilot - middle))
 
         def place(u: np.ndarray) -> np.ndarray:

@@ -27,7 +27,7 @@ from fogproof.domains import (
     UnitSphere,
     UnitSquare,
 )
-from fogproof.domains.line import Tail
+from fogproof.domains.line import Tail, centre
 
 Map = Callable[[np.ndarray], np.ndarray]
 
@@ -218,8 +218,8 @@ def _real_line(pilot: np.ndarray) -> Chart:
 
 
 def _center_and_spread(pilot: np.ndarray) -> tuple[float, float]:
-    low, center, high = np.quantile(pilot, [0.25, 0.5, 0.75]) if len(pilot) else (-1.0, 0.0, 1.0)
-    return float(center), float(high - low) if high > low else 1.0
+    low, high = np.quantile(pilot, [0.25, 0.75]) if len(pilot) else (-1.0, 1.0)
+    return centre(pilot), float(high - low) if high > low else 1.0
 
 
 def _ones(c: np.ndarray) -> np.ndarray:

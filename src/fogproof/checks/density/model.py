@@ -46,11 +46,12 @@ def integrated(chart: Chart, density: Density, pilot: np.ndarray, effort: Effort
 
 
 def second_view(chart: Chart, density: Density, pilot: np.ndarray, effort: Effort) -> Leaves:
-    """Return other boxes with the same density, none of their first edges in common with those of `integrated`."""
+    """Return other boxes with the same density, none of their first edges but that at 0 in common with those of `integrated`."""
     if len(chart.axes) == 1:
         along = np.sort(pilot[:, 0])
         inner = _quantiles(along, (np.arange(_PANELS // 2) + 0.5) / (_PANELS // 2))
-        breaks = np.unique(np.concatenate([inner, _shifted(chart.axes[0], _SPREAD), chart.axes[0].breaks]))
+        ends = inner, _shifted(chart.axes[0], _SPREAD), chart.axes[0].breaks, _zero(chart.axes[0])
+        breaks = np.unique(np.concatenate(ends))
         low, high = breaks[:-1, None], breaks[1:, None]
     else:
         low, high = corners(tuple(np.union1d(_shifted(axis, _PLANE), axis.breaks) for axis in chart.axes))
@@ -71,7 +72,8 @@ def _line(chart: Chart, density: Density, pilot: np.ndarray, effort: Effort) -> 
     pilot = np.sort(pilot)
     inner = _quantiles(pilot, np.arange(_PANELS + 1) / _PANELS)
     inner = inner[(inner > low) & (inner < high)]
-    breaks = np.unique(np.concatenate([inner, np.linspace(low, high, _SPREAD + 1), chart.axes[0].breaks]))
+    ends = inner, np.linspace(low, high, _SPREAD + 1), chart.axes[0].breaks, _zero(chart.axes[0])
+    breaks = np.unique(np.concatenate(ends))
     leaves = integrate(density, breaks[:-1, None], breaks[1:, None], effort.tolerance, effort.budget, effort.noise)
     leaves = looked_at(density, leaves, pilot, effort)
     probes = np.concatenate([[1e-9], (np.arange(_PROBES) + 0.5) / _PROBES, [1 - 1e-9]])
@@ -91,6 +93,12 @@ def _line(chart: Chart, density: Density, pilot: np.ndarray, effort: Effort) -> 
             break
         leaves = finer
     return leaves
+
+
+def _zero(axis: Axis) -> np.ndarray:
+    """Return the coordinate of 0, if it lies inside a line: a pole there is as narrow as no other can be."""
+    at = axis.hidden(np.zeros(1))
+    return at[(at > axis.low) & (at < axis.high)]
 
 
 def _quantiles(sorted_points: np.ndarray, shares: np.ndarray) -> np.ndarray:

@@ -19,6 +19,7 @@ from fogproof.domains import Law
 ROUNDED = 8192
 """Points that show the effect of rounding."""
 
+_HALF_TURN = 0.49  # of all probability: rounding moves a point at a pole to its other side
 _REGIONS = 64  # of an axis in which it is averaged
 _ROWS = 256  # the same, of the first axis, for what it does to the second
 _INSIDE = 4.0  # times the mean shift that is seen: all values of one step of coarse numbers
@@ -130,6 +131,12 @@ class _Axis:
         return np.asarray(np.max(shifts, axis=0)) + self.grain
 
     @cached_property
+    def turned(self) -> np.ndarray:
+        """Which points, (q,), may come from anywhere on the axis: at a pole, under a map with ends, an angle says nothing."""
+        away = np.abs([self._probability(other) - self.at for other in self.others])
+        return np.asarray(np.any(np.minimum(away, 1 - away) > _HALF_TURN, axis=0))
+
+    @cached_property
     def order(self) -> np.ndarray:
         """The points along the axis, (q,)."""
         return np.argsort(self.counted)
@@ -151,8 +158,8 @@ class _Axis:
         """Return (m + 1,) the probability that samples cross each edge; `pole` is the axis about whose ends this one turns."""
         mean = _mean_in_regions(self.at, self.shift, _REGIONS)
         blur = mean[np.minimum((self.marginal.cdf * _REGIONS).astype(np.intp), _REGIONS - 1)]
-        if pole is not None:
-            blur = blur + float(np.sum(pole.merged(np.array([0.0, 1.0]))))
+        lost = np.mean(self.turned) if pole is None else np.sum(pole.merged(np.array([0.0, 1.0])))
+        blur = blur + float(lost)
         blur[[0, -1]] = 0.0
         return np.asarray(blur)
 
@@ -170,7 +177,10 @@ class _Axis:
         mean = _mean_in_regions(first.at, self.shift, _ROWS)
         middle = 0.5 * (edges[1:] + edges[:-1])
         across = 2 * np.diff(edges) * mean[np.minimum((middle * _ROWS).astype(np.intp), _ROWS - 1)]
-        return np.asarray(across + (0.0 if self.marginal.ends else first.merged(edges)))
+        if not self.marginal.ends:
+            return np.asarray(across + first.merged(edges))
+        row = np.clip(np.searchsorted(edges, first.at, side="right") - 1, 0, len(middle) - 1)
+        return np.asarray(across + 2 * np.bincount(row, self.turned, len(middle)) / len(row))
 
 
 def _mean_in_regions(at: np.ndarray, shift: np.ndarray, regions: int) -> np.ndarray:

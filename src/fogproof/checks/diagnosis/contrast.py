@@ -66,8 +66,11 @@ class Contrast:
     cell: np.ndarray
 
     @staticmethod
-    def of(subject: Subject, n: int, rng: np.random.Generator) -> Contrast | None:
-        """Draw about n samples, and as many points of a law that follows a pilot of them; None if there are too few."""
+    def of(subject: Subject, n: int, rng: np.random.Generator, jumps: bool = False) -> Contrast | None:
+        """Draw about n samples, and as many points of a law that follows a pilot of them; None if there are too few.
+
+        jumps  whether points stay at which rounding changes the density: that of samples there says nothing
+        """
         wanted = subject.pilot or max(n // 2, 1 << 12)
         pilot, x = good_points(subject, rng, wanted), good_points(subject, rng, n)
         if len(pilot) < _PER_CELL or len(x) < _PER_CELL:
@@ -83,7 +86,9 @@ class Contrast:
         leaf = tree.leaf(coordinates)
         share = anywhere / len(x)
         q = law.density(both) * (share + (1 - share) * tree.density(coordinates, leaf))
-        if not law.stepped and moved_by_rounding(subject, pilot[:_ROUNDED]).any():  # their density says nothing
+        if (
+            not (jumps or law.stepped) and moved_by_rounding(subject, pilot[:_ROUNDED]).any()
+        ):  # their density says nothing
             telling = in_domain(subject.domain, both, subject.roundoff)
             telling[telling] = ~moved_by_rounding(subject, both[telling])
             x, z, q, leaf = x[telling[: len(x)]], z[telling[len(x) :]], q[telling], leaf[telling]

@@ -19,8 +19,9 @@ from fogproof.checks.diagnosis.explaining import (
     refused,
     setting_of,
 )
-from fogproof.checks.diagnosis.factors import named_factor
+from fogproof.checks.diagnosis.factors import differs_in_one_place, named_factor, scaled, scaled_or_lost
 from fogproof.checks.diagnosis.fitting import likeliest
+from fogproof.checks.diagnosis.flats import in_a_plane
 from fogproof.checks.diagnosis.hypothesis import Setting
 from fogproof.checks.diagnosis.patience import OutOfTimeError, limited
 from fogproof.checks.diagnosis.periods import repeated
@@ -74,6 +75,8 @@ def diagnosed(
         return cause, _exponential(subject, samples, seed)
     if cause == "repeated samples":
         return cause, repeated(subject, samples, seed)
+    if cause in _SHARES and not statistical:
+        return scaled_or_lost(findings)
     if cause in {"atom", _COARSE} | _CONSTANT | _STATISTICAL or (cause in _SYMPTOMS | _ZERO | _SHARES and statistical):
         try:
             with np.errstate(all="ignore"):
@@ -92,6 +95,10 @@ def diagnosed(
 
 def _explained(subject: Subject, cause: str, findings: Sequence[Finding], samples: int, seed: int) -> tuple[str, str]:
     """Return the cause and the words; what accounts for a share of the samples does not explain a law that is wrong beside it."""
+    setting = setting_of(subject, min(SIZES[0], samples), seed)
+    flat = in_a_plane(setting, subject.roundoff) if setting else ("", "")
+    if flat[0]:
+        return flat
     named, words, rest = ("", "", subject) if cause in _CONSTANT else single_points(subject, samples, seed)
     often = 0.0 if all(whole_columns(subject.domain)) else sum(rest.atoms.values()) - sum(subject.atoms.values())
     few = _few_values(subject, samples, seed) if cause in {_COARSE} | _STATISTICAL else ""
@@ -103,12 +110,13 @@ def _explained(subject: Subject, cause: str, findings: Sequence[Finding], sample
         return told
     if few or cause == _COARSE:
         return _COARSE, few
-    if cause != "atom" and cause not in _SHARES:
+    again = any(f.check == "repeated points" and f.outcome == "rejected" for f in findings)
+    if cause != "atom" and cause not in _SHARES and not (named == "atom" and again):
         return _searched(subject, cause, findings, samples, seed)
     own = cause if cause in _SHARES else named or cause
     beside = contrasted(rest, samples, seed)
     if beside is None or beside[1].left < _MISFIT * math.sqrt(2 * beside[1].freedom):
-        return own, words
+        return scaled_or_lost(findings) if cause in _SHARES and not words else (own, words)
     other, why = _searched(rest, "shape", findings, samples, seed)
     if cause in _SHARES:
         return other, f"{why}; " * bool(why) + "and the share of samples that are given up is another one"
@@ -166,11 +174,11 @@ def _searched(
     setting, base = shown
     fits = not base.left > _MISFIT * math.sqrt(2 * base.freedom)
     if cause in _CONSTANT and fits:
-        return cause, _factor(base)
+        return cause, scaled(base)
     by_labels = any(f.check == "normalisation" and f.resolution is None for f in findings)
-    crowded = by_labels and fits and bool(_factor(base)) and not _integrates_to(setting, base)
-    if cause == "shape" and by_labels and fits and _factor(base) and not crowded:
-        return "normalisation", _factor(base)
+    crowded = by_labels and fits and bool(scaled(base)) and not _integrates_to(setting, base)
+    if cause == "shape" and by_labels and fits and scaled(base) and not crowded:
+        return "normalisation", scaled(base)
     found = explanation(subject, setting, base, samples, seed)
     if found is not None and not (cause in _ZERO and found[0] in _ANYTHING):
         return found
@@ -208,16 +216,6 @@ def _off_by_atoms(integral: Finding, findings: Sequence[Finding], samples: int) 
     if integral.effect is None or not any(f.outcome == "rejected" for f in atoms):
         return False
     return abs(integral.effect + sum(f.effect or 0.0 for f in atoms)) < _CHANCE * math.sqrt(len(atoms) / samples)
-
-
-def _factor(base: Fit) -> str:
-    """Return in words the constant factor that is all that is wrong with the pdf."""
-    if not (base.constant > 0 and abs(math.log(base.constant)) > _CHANCE * base.doubt):
-        return ""
-    factor = 1 / base.constant
-    words = f"the samples fit the pdf but for a constant factor {factor:.4g} +- {base.doubt * factor:.1g}"
-    name = named_factor(factor, base.doubt * factor)
-    return f"{words}, that is {name}" if name else words
 
 
 def _integrates_to(setting: Setting, base: Fit) -> bool:
@@ -283,4 +281,6 @@ def _constant(
     more = {name: value for name, value in more.items() if math.isfinite(value)}
     name = named_factor(factor, error, more)
     words = f"the samples fit the pdf but for a constant factor {factor:.6g}"
-    return cause, f"{words}, that is {name}" if set(name) & set("piabth") else words
+    if set(name) & set("piabth"):
+        return cause, f"{words}, that is {name}"
+    return cause, words + differs_in_one_place(factor, samples)

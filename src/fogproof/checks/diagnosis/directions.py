@@ -104,6 +104,7 @@ def _powers(setting: Setting) -> Iterator[Hypothesis]:
         known_number({2.0: "a square root of the cosine is missing", 0.5: "a square root too many" + weighted}),
         null=1.0,
         below="wrong power",
+        otherwise="wrong power",
     )
 
 

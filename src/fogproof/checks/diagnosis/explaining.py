@@ -34,7 +34,11 @@ _SMALL = 1 << 20  # samples that tell a misfit which does not show in so many
 _MISFIT = 4.0  # standard deviations of a chi-square that is no chance
 _STANDS_OUT = 12.0  # of log-likelihood that a hypothesis gains over the claim
 _CLEARLY = 3.0  # of log-likelihood that tells two hypotheses apart, and one from a law that is a little off anywhere
+_NO_CHANCE = (
+    6.0  # the same: a right law leaves some in one of a hundred settings, and three times less of each that is more
+)
 _ALL_BUT = 0.9995  # of the misfit: the rest is what the numbers in a hypothesis, estimated from samples, are off
+_ALL = 0.995  # of the misfit: as a whole percentage, it is all
 _SAME = 1e-3  # of log-likelihood: two hypotheses that are one density
 _CLOSE = 12.0  # of log-likelihood that more samples may make up
 _FITS = 0.98  # the same of a law that has nothing to do with the claim
@@ -66,7 +70,7 @@ def explanation(subject: Subject, setting: Setting, base: Fit, samples: int, see
         told = f"near to, but not: {best.words} (this explains {most} of the misfit, and what is left is no chance)"
         return best.cause if best.cause in _PLACES else "shape", told
     least = share * gain / (gain + unseen(many.contrast))
-    most = f"{share:.0%}" if least > _EXPLAINS else f"at least {math.floor(100 * least)}%"  # what more samples may show
+    most = f"{share:.0%}" if least > _ALL else f"at least {math.floor(100 * least)}%"  # what more samples may show
     told = f"{best.words} (this explains {most} of the misfit)"
     if not near:
         return best.cause, told
@@ -115,7 +119,7 @@ def refused(setting: Setting, fit: Fit, s: np.ndarray) -> bool:
     """Return whether the samples differ by more than chance from a density with values s, in cells or by a general correction."""
     if fit.left > _MISFIT * math.sqrt(2 * fit.freedom):
         return True
-    return unexplained(setting.contrast, s) > _CLEARLY
+    return unexplained(setting.contrast, s) > _NO_CHANCE
 
 
 def _candidates(
@@ -125,7 +129,12 @@ def _candidates(
     if base.left < _MISFIT * math.sqrt(2 * base.freedom):
         # a small smooth misfit hides among many cells, and stands out against the hypothesis that it is
         many = setting if samples <= SIZES[-1] else setting_of(subject, min(_SMALL, samples), seed)
-        found = nearest(setting, many, hypotheses(setting)) if many else []
+        tried = hypotheses(setting)
+        found = nearest(setting, many, tried) if many else []
+        if many:  # a place that no sample reaches is no neighbour of the claim; few known points lie there
+            bounded = tried if many is setting else hypotheses(many)
+            found += [judged(many, each, 0.0, 0.0, 0.0) for each in bounded if each.cause in _PLACES]
+            found.sort(key=lambda each: each.score, reverse=True)
         if many and found and found[0].fit.likelihood - many.contrast.likelihood(many.values) > _STANDS_OUT:
             return many, found
     found = likeliest(setting, base, hypotheses(setting))

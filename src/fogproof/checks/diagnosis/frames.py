@@ -17,6 +17,8 @@ _LEAN = 0.03  # mean length of directions that have a direction
 _LEAST = 1e-6  # determinant of three axes that span space
 _POINTS, _STEPS = 256, 20  # that tell an axis of symmetry, and steps towards it
 _MOST, _SYMMETRIC = 0.9, 1e-8  # of the points differ by so little of the variance of a logarithm
+_AZIMUTHS, _HALVED = 8, 50  # in which an edge is looked for, and how often
+_CIRCLE = 1e-6  # distance of an edge from its plane, of its own size
 _SLIPS = {
     "in 1/(s + z)": (0,),
     "in the first axis": (1, 2, 3),
@@ -105,7 +107,30 @@ def axis_of_symmetry(setting: Setting, near: np.ndarray) -> np.ndarray:
 
     found = least_squares(difference, np.zeros(2), max_nfev=_STEPS)
     left = float(np.quantile(found.fun**2, _MOST))  # beyond an edge of the claim nothing is told
-    return axis(found.x) if left < _SYMMETRIC * float(np.var(logarithm)) else near
+    return axis(found.x) if left < _SYMMETRIC * float(np.var(logarithm)) else _axis_of_edge(setting, near, across)
+
+
+def _axis_of_edge(setting: Setting, near: np.ndarray, across: np.ndarray) -> np.ndarray:
+    """Return the axis (3,) of the circle on which the claim ends, all around `near`; that itself if it ends on none.
+
+    An even claim in a cone has no other mark of its axis. Its edge is found by bisection, in directions (m, 3) across `near`.
+    """
+    phi = 2 * np.pi * np.arange(_AZIMUTHS)[:, None] / _AZIMUTHS
+    away = np.cos(phi) * across[0] + np.sin(phi) * across[1]
+
+    def at(theta: np.ndarray) -> np.ndarray:
+        return np.asarray(np.cos(theta)[:, None] * near + np.sin(theta)[:, None] * away)
+
+    low, high = np.zeros(_AZIMUTHS), np.full(_AZIMUTHS, np.pi)
+    if not setting.p(near[None])[0] > 0 or setting.p(-near[None])[0] > 0:
+        return near
+    for _ in range(_HALVED):
+        middle = 0.5 * (low + high)
+        within = setting.p(at(middle)) > 0
+        low, high = np.where(within, middle, low), np.where(within, high, middle)
+    edge = at(low)
+    _, lengths, axes = np.linalg.svd(edge - edge.mean(axis=0))
+    return axes[2] * np.sign(axes[2] @ near) if lengths[2] < _CIRCLE * lengths[1] else near
 
 
 def _logarithm(p: np.ndarray) -> np.ndarray:

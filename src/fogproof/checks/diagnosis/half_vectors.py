@@ -11,6 +11,7 @@ from fogproof.checks.diagnosis import planes
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting
 
 _UNIT_LENGTH = 0.3  # relative error of a direction that cells tell
+_POINTS = 512  # that tell the usual density of a claim
 _STEP_OF_VIEW, _TRIES_OF_VIEW = 0.05, 60  # of the search for the likeliest one
 
 
@@ -29,6 +30,9 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
     if not (level > 0 and abs(length / level - 1) < _UNIT_LENGTH):
         return
     wo = _likeliest_view(setting, np.asarray(gradient) / length)
+    usual = float(np.median(setting.p(setting.claimed_points(_POINTS))))
+    if setting.p(-wo[None])[0] >= usual:  # where h is at right angles to wo: any density may go to infinity there
+        return
     to = ", ".join(f"{c:.3f}" for c in wo)
     words = f"the Jacobian 1/(4 h . wo) of a reflection at half vectors h is missing, with wo = ({to})"
     yield Hypothesis(

@@ -186,6 +186,17 @@ def _empty_cells(setting: Setting) -> Iterator[Hypothesis]:
         return np.where(empty[contrast.tree.leaf(u) * cells // leaves], 0.0, setting.p(x))
 
     share = float(expected[empty].sum() / max(expected.sum(), 1e-300))
-    words = f"a region of probability {share:.3g} is never reached; the other samples fit the pdf"
+    z = contrast.z.reshape(len(contrast.z), -1)
+    where = _within(z[empty[contrast.cell[n:]] & (weight > 0)], contrast.points.reshape(-1, z.shape[1]))
+    words = f"a region of probability {share:.3g}{where} is never reached; the other samples fit the pdf"
     made: Density = density
     yield Hypothesis("skipped region", words, lambda s, _: made)
+
+
+def _within(places: np.ndarray, points: np.ndarray) -> str:
+    """Return in words the box around places (m, k), in the columns in which it is narrower than all points."""
+    ends = np.stack([places.min(axis=0), places.max(axis=0)], axis=1)
+    narrow = np.flatnonzero(np.ptp(ends, axis=1) < _NEARLY_ALL * np.ptp(points, axis=0))
+    names = [f"x[{k}]" if len(ends) > 1 else "x" for k in range(len(ends))]
+    box = " and ".join(f"{ends[k, 0]:.4g} < {names[k]} < {ends[k, 1]:.4g}" for k in narrow.tolist())
+    return f", where {box}," if box else ""

@@ -41,6 +41,7 @@ def clamped(contrast: Contrast, subject: Subject) -> str:
     """
     n = len(contrast.x)
     weight = subject.density(contrast.z) / contrast.q[n:]
+    weight = np.where(np.isfinite(weight), weight, 0.0)  # not at a pole
     for name, read in _readings(contrast, subject.domain):
         other = read(contrast.z)
         values, counts = np.unique(read(contrast.x), return_counts=True)
@@ -126,7 +127,7 @@ def single_points(subject: Subject, samples: int, seed: int) -> tuple[str, str, 
     The third is the subject with these points declared, or without the samples of a sheet, where one coordinate is a constant: what
     lies between them is the rest.
     """
-    contrast = Contrast.of(subject, min(_DRAWN, samples), batch_generator(seed, "diagnosis", 2, 0))
+    contrast = Contrast.of(subject, min(_DRAWN, samples), batch_generator(seed, "diagnosis", 2, 0), jumps=True)
     if contrast is None:
         return "", "", subject
     points, counts = np.unique(contrast.x, axis=0, return_counts=True)

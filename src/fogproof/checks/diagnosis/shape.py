@@ -28,7 +28,8 @@ def unexplained(contrast: Contrast, s: np.ndarray) -> float:
     n, price = len(contrast.x), _price(contrast)
     most, cells = 0.0, int(contrast.cell.max()) + 1
     rank = np.empty(len(odds), dtype=np.intp)
-    rank[np.argsort(odds, kind="stable")] = np.arange(len(odds))
+    mixed = np.random.default_rng(0).permutation(len(odds))  # of equal odds, samples are not the first
+    rank[mixed[np.argsort(odds[mixed], kind="stable")]] = np.arange(len(odds))
     groups = [contrast.cell * k // cells for k in _CELLS if k <= cells] + [rank * k // len(odds) for k in _LEVELS]
     for group in groups:
         all_of, expected = np.bincount(group), np.bincount(group, w)
