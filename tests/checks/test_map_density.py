@@ -222,8 +222,9 @@ def test_wrong_ones_break_it(name):
         (lambda u: np.floor(10 * u[:, 0]).astype(int), Discrete(10), 1),
         (lambda u: np.floor(u[:, 0] * 64) / 64, LINE, 1),
         (lambda u: (np.sin(1e9 * u[:, 0]) * 1e4) % 1, LINE, 1),
+        (lambda u: np.where(u[:, 0] < 2e-4, u[:, 1], u[:, 1] ** 2), LINE, 2),
     ],
-    ids=["generator", "choice", "curve", "table", "stairs", "hash"],
+    ids=["generator", "choice", "curve", "table", "stairs", "hash", "rare choice"],
 )
 def test_nothing_is_said_without_a_derivative(sample, domain, dimensions):
     assert found(sample, ones, domain, dimensions) is None
