@@ -19,8 +19,9 @@ from pathlib import Path
 import numpy as np
 
 from fogproof import Draw, UnitSphere, check_sampler
+from fogproof.input_files import read_toml
 from fogproof.pipe.check import Settings, check_program
-from fogproof.pipe.spec import read_table, spec_of
+from fogproof.pipe.spec import spec_of
 from fogproof.pipe.truth import truth_of
 
 EXAMPLE = Path(__file__).resolve().parents[1] / "examples" / "pipe"
@@ -70,7 +71,7 @@ def main(samples: int = 10_000_000, runs: int = 3) -> None:
             return p
 
         spec = EXAMPLE / "hg.toml"
-        truth = truth_of(spec_of(read_table(spec), str(spec)), "float64")
+        truth = truth_of(spec_of(read_toml(spec, "the spec file"), str(spec)), "float64")
         options = {"axis": truth.axis, "mean_cosine": truth.mean_cosine, "reference": truth.density}
         shares = []
         for seed in range(runs):

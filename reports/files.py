@@ -189,7 +189,7 @@ def write_output(output: str | Path, content: str | bytes, *sources: str | Path)
     if path.is_file() or not path.exists() or path.is_dir():
         return write_file(Path(os.path.realpath(path)), content)
     try:  # by its own name: what /dev/stdout leads to may have none
-        path.write_bytes(content if isinstance(content, bytes) else content.encode("utf-8"))
+        path.write_bytes(_bytes(content))
     except OSError as error:
         raise InvalidInputError(f"cannot write {output}: {error.strerror}", str(output)) from None
     return path
@@ -197,13 +197,12 @@ def write_output(output: str | Path, content: str | bytes, *sources: str | Path)
 
 def write_file(path: Path, content: str | bytes) -> Path:
     """Put `content` at `path` whole or not at all, making folders on the way; a fault is an `InvalidInputError`."""
-    data = content if isinstance(content, bytes) else content.encode("utf-8")
     beside = path.with_name(f".{_short(path.name)}.{os.getpid()}")
     missing = absent(path.parent)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         try:
-            beside.write_bytes(data)
+            beside.write_bytes(_bytes(content))
             os.replace(beside, path)
         finally:
             beside.unlink(missing_ok=True)
@@ -214,6 +213,11 @@ def write_file(path: Path, content: str | bytes) -> Path:
             f"cannot write {path}: {reason}; choose a folder that can be written", str(path)
         ) from None
     return path
+
+
+def _bytes(content: str | bytes) -> bytes:
+    """Return what a file holds; a lone surrogate, which no UTF-8 has, is a question mark."""
+    return content if isinstance(content, bytes) else content.encode("utf-8", "replace")
 
 
 def write_picture(path: Path, content: str | bytes) -> Path:

@@ -32,8 +32,9 @@ from broken_files import SCENE, SPEC, STUDY, broken_table, image, npy, nvdb, row
 
 from fogproof.errors import FogproofError
 from fogproof.images.formats import SUFFIXES, format_of
+from fogproof.input_files import read_toml
 from fogproof.pipe.files import read_rows
-from fogproof.pipe.spec import read_table, spec_of
+from fogproof.pipe.spec import spec_of
 from fogproof.reports import compare_exit_code, read_record, write_report
 from fogproof.reports.records.runs import SCHEMA
 from fogproof.scene.files import read_fields
@@ -90,7 +91,7 @@ def kinds_of(folder: Path, run: dict[str, Any]) -> list[Kind]:
         Kind("samples", ".csv", rows, lambda path: read_rows(path, 3, "float64"), 2),
         Kind("samples", ".npy", npy, lambda path: read_rows(path, 3, "float64"), 2),
         Kind("spec", ".toml", lambda rng: toml(broken_table(rng, SPEC)).encode(),
-             lambda path: spec_of(read_table(path), str(path)), 4),
+             lambda path: spec_of(read_toml(path, "the spec file"), str(path)), 4),
         Kind("scene", ".json", lambda rng: json.dumps(broken_table(rng, SCENE)).encode(), scene),
         Kind("study", ".json", lambda rng: json.dumps(broken_table(rng, STUDY)).encode(),
              lambda path: study_of(path.read_text(), str(folder), str(path))),

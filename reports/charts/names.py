@@ -21,6 +21,7 @@ def shared_folder(names: Sequence[str]) -> str:
 
 def cut(text: str, width: float) -> str:
     """Return a text on one line, its middle left out if it is wider than `width` px."""
+    text = label(text, max(int(width), 4))  # no letter is narrower than a pixel
     limit = max(len(text), 4)
     while limit > 4 and text_width(label(text, limit), SIZE) > width:
         limit -= 1

@@ -114,7 +114,7 @@ def linked(text: str, cases: Sequence[Case]) -> Markup:
     parts = re.split(f"({'|'.join(map(re.escape, names))})", text) if names else [text]
     link = Markup('<a href="#{}"><bdi>{}</bdi></a>')
     return Markup("").join(
-        link.format(quote(anchor(part)), breakable(part)) if part in names else keys(visible(part)) for part in parts
+        link.format(quote(anchor(part)), breakable(part)) if part in names else keys(part) for part in parts
     )
 
 
@@ -122,7 +122,7 @@ def keys(text: str) -> Markup:
     """Return a text in which what stands in back-ticks is code."""
     from markupsafe import Markup, escape
 
-    return Markup(re.sub("`([a-z]+)`", r"<code>\1</code>", str(escape(text))))
+    return Markup(re.sub("`([a-z]+)`", r"<code>\1</code>", str(escape(visible(text)))))
 
 
 def grouped(value: float) -> str:

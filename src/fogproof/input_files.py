@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import datetime
 import json
 import os
 import stat
 import tomllib
+from collections.abc import Iterator
 from io import BufferedReader
 from pathlib import Path
 from typing import Any
@@ -68,26 +70,44 @@ def parse_json(text: str | bytes) -> Any:
     return json.loads(text, object_pairs_hook=_unique)
 
 
-def parse_toml(text: str) -> dict[str, Any]:
+def read_toml(path: str | Path, what: str) -> dict[str, Any]:
+    """Return the table of a TOML file, or raise an `InvalidInputError` that names it: texts, numbers and truth values alone.
+
+    what  what the file is, for the message: "the study file"
+    """
+    text = read_text(path, what)
+    try:
+        table = _parsed(text)
+        dates = [(key, value) for key, value in _leaves(table) if isinstance(value, datetime.date | datetime.time)]
+    except (ValueError, RecursionError) as error:
+        raise InvalidInputError(f"{path} is not valid TOML: {error}", str(path)) from None
+    for key, value in dates:
+        fix = "is a date or a time, and no key takes one: put it in quotes"
+        raise InvalidInputError(f"{path}: {key} = {value} {fix}", key)
+    return table
+
+
+def _parsed(text: str) -> dict[str, Any]:
     """Return the table of a TOML text; a ValueError (or RecursionError) where it is none, or has an integer beyond all numbers."""
+    digits = ValueError("an integer has too many digits; write it as a float, 1e300")
     try:
         table = tomllib.loads(text)
     except tomllib.TOMLDecodeError:
         raise
     except ValueError:  # Python's bound on digits, whose words are for programmers
-        raise ValueError(_DIGITS) from None
-    _require_numbers(table)
+        raise digits from None
+    if any(isinstance(value, int) and value.bit_length() > 1023 for _, value in _leaves(table)):
+        raise digits
     return table
 
 
-_DIGITS = "an integer has too many digits; write it as a float, 1e300"
-
-
-def _require_numbers(value: Any) -> None:
-    for item in value.values() if isinstance(value, dict) else value if isinstance(value, list) else ():
-        _require_numbers(item)
-    if isinstance(value, int) and value.bit_length() > 1023:
-        raise ValueError(_DIGITS)
+def _leaves(value: Any, key: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield what is no table and no list, each under its key as messages have it: "ray.origin.0"."""
+    if isinstance(value, dict | list):
+        for name, item in value.items() if isinstance(value, dict) else enumerate(value):
+            yield from _leaves(item, f"{key}.{name}" if key else str(name))
+    else:
+        yield key, value
 
 
 def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

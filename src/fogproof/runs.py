@@ -15,13 +15,14 @@ import time
 import weakref
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
+from fogproof.catalogue.cases import LONGEST_NAME
 from fogproof.checks import Verdict
 from fogproof.checks.arguments import seed_of, shared_among
 from fogproof.checks.json_values import jsonable
 from fogproof.checks.streams import batch_generator
-from fogproof.errors import InvalidValueError
+from fogproof.errors import InvalidValueError, UnsupportedError
 from fogproof.validate import number
 from fogproof.verify import ALPHA, SCHEMA, environment
 
@@ -49,8 +50,10 @@ class Run:
         self._beside = 0.0  # alphas of verdicts that took none of the run's
         self._process, self._forks = os.getpid(), _file_for_forks(self)
 
-    def __getstate__(self) -> dict[str, Any]:
-        return {**vars(self), "_forks": None}  # a copy elsewhere is no fork
+    def __getstate__(self) -> NoReturn:
+        """Refuse to be copied or pickled: what a copy rejects would be lost."""
+        ways = "add here what another process returns, run.add(name, verdict), or start it as a fork"
+        raise UnsupportedError(f"a Run is neither copied nor pickled, for what the copy finds would be lost: {ways}")
 
     def check(self, name: str, check: Callable[..., Verdict], *arguments: Any, **options: Any) -> Verdict:
         """Call a check of fogproof's, such as `check_sampler`, and keep the verdict.
@@ -96,6 +99,8 @@ class Run:
         """Keep a case under a new name and return its place, from 1; also threads at the same time get different ones."""
         if not isinstance(name, str):
             raise InvalidValueError("name", "must be a string", name)
+        if len(name) > LONGEST_NAME:
+            raise InvalidValueError("name", f"must have at most {LONGEST_NAME} characters", name)
         if self._cases.setdefault(name, case) is not case:
             raise InvalidValueError("name", "must be new in the run", name)
         self._keep(name, case)

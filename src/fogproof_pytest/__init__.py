@@ -23,14 +23,17 @@ from typing import Any
 
 import pytest
 
+from fogproof_pytest import crashes
+from fogproof_pytest.expected import expected
+
 ALPHA = 1e-6
 """False-alarm probability of a session, unless told otherwise."""
 
 _SEED, _ALPHA, _WEIGHTS = pytest.StashKey[int](), pytest.StashKey[float](), pytest.StashKey[float]()
 _NEWS, _LATE = pytest.StashKey[deque[tuple[Any, ...]]](), pytest.StashKey[list[Any]]()
 """What checks have found and no report has told yet; and what came after the last report. See `checks`."""
-_CRASHED = pytest.StashKey[list[str]]()
-"""Tests in which a worker of xdist ended."""
+_CRASHED = pytest.StashKey[list[Any]]()
+"""Reports of tests in which a worker of xdist ended."""
 _SESSION = pytest.StashKey[pytest.Session]()
 _FAILED, _USAGE, _NOTHING = 1, 4, 5  # pytest.ExitCode
 _MARKER = (
@@ -66,6 +69,7 @@ def pytest_configure(config: pytest.Config) -> None:
     config.stash[_SEED] = told if told is not None else secrets.randbits(62) if seed is None else seed
     config.stash[_ALPHA] = alpha
     config.stash[_NEWS], config.stash[_LATE], config.stash[_CRASHED] = deque(), [], []
+    crashes.open_own(config)
     atexit.register(_after_all, config.stash[_NEWS])
     config.add_cleanup(partial(_require_failed, config))  # after whatever tests and their fixtures have asked for
     folder = config.getoption("--fogproof-report")
@@ -97,8 +101,9 @@ def pytest_sessionstart(session: pytest.Session) -> None:
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_configure_node(node: Any) -> None:
-    """Tell a worker of xdist the seed."""
+    """Tell a worker of xdist the seed, and where to write down what it finds."""
     node.workerinput["fogproof_seed"] = node.config.stash[_SEED]
+    crashes.begin(node)
 
 
 def pytest_report_header(config: pytest.Config) -> str:
@@ -160,19 +165,19 @@ def fogproof(request: pytest.FixtureRequest) -> Iterator[Any]:
         )
 
 
-def _keeper(config: pytest.Config) -> Callable[[str, dict[str, Any], int, str], None]:
-    """Return what keeps a verdict in the folder of the report, whatever becomes of the session."""
-    folder = config.getoption("--fogproof-report")
-    if not folder:
-        return lambda *_: None
-    from fogproof_pytest.kept import keep
-
+def _keeper(config: pytest.Config) -> Callable[[str, dict[str, Any] | None, str, str], None]:
+    """Return what keeps a verdict, whatever becomes of the session: in the folder of the report, and where a crash is heard of."""
+    folder, write_down = config.getoption("--fogproof-report"), crashes.keeper(config)
     worker = getattr(config, "workerinput", {}).get("workerid", "")
 
-    def kept(test: str, verdict: dict[str, Any], seed: int, process: str) -> None:
-        keep(folder, test, verdict, seed, ", ".join(filter(None, (worker, process))))
+    def keep(test: str, verdict: dict[str, Any] | None, why: str, process: str) -> None:
+        write_down(test, verdict, why)
+        if folder and verdict:
+            from fogproof_pytest import kept
 
-    return kept
+            kept.keep(folder, test, verdict, config.stash[_SEED], ", ".join(filter(None, (worker, process))))
+
+    return keep
 
 
 def _drained(news: deque[tuple[Any, ...]]) -> list[tuple[Any, ...]]:
@@ -180,12 +185,6 @@ def _drained(news: deque[tuple[Any, ...]]) -> list[tuple[Any, ...]]:
     while news:
         found.append(news.popleft())
     return found
-
-
-def _expected(report: Any, call: pytest.CallInfo[None]) -> bool:
-    """Whether an exception ended the test as its mark xfail says; `pytest.xfail()` comes where a rejection was caught."""
-    ended = call.excinfo is not None and not call.excinfo.errisinstance(pytest.xfail.Exception)
-    return ended and hasattr(report, "wasxfail")
 
 
 @pytest.hookimpl(wrapper=True)
@@ -203,7 +202,7 @@ def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) ->
             words = "; ".join(f"{v['check']}: {v['outcome']}, alpha {v['alpha']:.2g}" for v in own)
             item.user_properties.append(("fogproof", words))
         lost = [why for *_, why in found if why]
-        if lost and not report.failed and not _expected(report, call):
+        if lost and not report.failed and not (hasattr(report, "wasxfail") and expected(item, call)):
             vars(report).pop("wasxfail", None)
             fix = "if that is what you expect, call the package itself (import fogproof), and look at the verdict"
             report.outcome = "failed"
@@ -218,9 +217,10 @@ def pytest_testnodedown(node: Any) -> None:
 
 
 @pytest.hookimpl(optionalhook=True)
-def pytest_handlecrashitem(crashitem: str, sched: Any) -> None:
-    """Hear of a test that has ended its worker of xdist, and whose verdicts went with it."""
-    sched.config.stash[_CRASHED].append(crashitem)
+def pytest_handlecrashitem(crashitem: str, report: Any) -> None:
+    """Attach to the report of a test that has ended its worker of xdist what it had found, whether or not it is run again."""
+    report.fogproof = crashes.found(report.node, crashitem)
+    report.node.config.stash[_CRASHED].append(report)
 
 
 def _after_all(news: deque[tuple[Any, ...]]) -> None:
@@ -280,7 +280,8 @@ def pytest_terminal_summary(terminalreporter: Any, exitstatus: int, config: pyte
         if verdict and (before is None or before["outcome"] != "rejected"):  # another try takes no rejection back
             told[test, number] = verdict
     folder = config.getoption("--fogproof-report")
-    lost, crashed = [why for *_, why in late if why], config.stash[_CRASHED]
+    lost = [why for *_, why in late if why]
+    crashed = [report.nodeid for report in config.stash[_CRASHED] if report.failed]  # and were not run again
     if not told and not folder and not lost:
         return
     from fogproof.errors import FogproofError

@@ -24,7 +24,7 @@ class Checks:
     share     the test's share of the false-alarm probability
     calls     how many checks share it equally; None: the k-th gets 1 / (k (k + 1)) of it, which adds up to at most all of it
     news      told of every verdict: (test, its number, plain data, why it fails the test or "")
-    keep      told of every verdict at once, wherever it is reached: (test, plain data, seed, the process if it is a forked one)
+    keep      told of all that at once, wherever it is reached: (test, plain data, why, the process if it is a forked one)
     """
 
     def __init__(
@@ -35,7 +35,7 @@ class Checks:
         calls: int | None,
         passes: bool,
         news: deque[tuple[Any, ...]],
-        keep: Callable[[str, dict[str, Any], int, str], None],
+        keep: Callable[[str, dict[str, Any] | None, str, str], None],
     ) -> None:
         self._test, self._share, self._seed = test, share, seed
         self._calls, self._passes, self._news, self._keep = calls, passes, news, keep
@@ -66,7 +66,7 @@ class Checks:
             __tracebackhide__ = True
             if self._ended:
                 why = f"{name} was called by the fixture of {self._test}, which had ended: it was not judged"
-                self._put(None, why)
+                self._tell(None, why)
                 raise InvalidValueError("fogproof", why, name, "ask for the fixture in the test that uses it")
             self._running.append(name)
             try:
@@ -87,26 +87,28 @@ class Checks:
                 options.setdefault("seed", self._seed_of(number))
             found = check(*arguments, **options)
             if isinstance(found, Verdict):
-                self._tell(name, found)
+                self._judged(name, found)
                 self._raise(found)
                 return found
             if isinstance(getattr(found, "verdict", None), Verdict):  # an image, and what its verdict rests on
-                self._tell(name, found.verdict)
+                self._judged(name, found.verdict)
                 self._raise(found.verdict)
                 return found
             for one in found:
-                self._tell(f"{name} of {one.name}", one.verdict)
+                self._judged(f"{name} of {one.name}", one.verdict)
             for relation in sorted(found, key=lambda one: one.verdict.outcome != "rejected"):
                 self._raise(relation.verdict, f"{relation}\n")
             return found
 
         return checked
 
-    def _tell(self, name: str, verdict: Verdict) -> None:
+    def _judged(self, name: str, verdict: Verdict) -> None:
         fails = verdict.outcome == "rejected" or (verdict.outcome == "inconclusive" and not self._passes)
-        told = {"check": name, **verdict.to_dict()}
-        self._keep(self._test, told, self._seed, "" if self._process == os.getpid() else f"process {os.getpid()}")
-        self._put(told, f"{name}: {verdict.outcome}" if fails else "")
+        self._tell({"check": name, **verdict.to_dict()}, f"{name}: {verdict.outcome}" if fails else "")
+
+    def _tell(self, told: dict[str, Any] | None, why: str) -> None:
+        self._keep(self._test, told, why, "" if self._process == os.getpid() else f"process {os.getpid()}")
+        self._put(told, why)
 
     def _put(self, told: dict[str, Any] | None, why: str) -> None:
         """Tell of a verdict; a process that the test has forked leaves it in a file that both have open."""

@@ -15,9 +15,8 @@ from pathlib import Path
 from typing import Any
 
 from fogproof.checks.json_values import jsonable
-from fogproof.errors import InvalidInputError
 from fogproof.reports.files import REPORT
-from fogproof.reports.records.runs import RESULTS, load_record, write_record
+from fogproof.reports.records.runs import RESULTS, write_record
 from fogproof.runs import case_record, run_record
 
 _INTERRUPTED = 2  # pytest.ExitCode
@@ -63,13 +62,6 @@ def keep(folder: str, test: str, verdict: dict[str, Any], seed: int, where: str)
             if tail.endswith(end):
                 os.lseek(file, -len(end), os.SEEK_END)
                 os.write(file, begun + line + _END)
-
-
-def kept(folder: str, test: str, seed: int) -> list[dict[str, Any]]:
-    """Return the cases of a test in the record; none where that is gone."""
-    with contextlib.suppress(InvalidInputError):
-        return [case for case in load_record(folder)["cases"] if case["reproduce"] == again(test, seed)]
-    return []
 
 
 @contextlib.contextmanager

@@ -9,7 +9,7 @@ from typing import Any
 
 from fogproof.runs import case_record, run_record
 from fogproof.text import one_line, state
-from fogproof_pytest.kept import again, kept
+from fogproof_pytest.kept import again
 
 Told = dict[tuple[str, int], dict[str, Any]]
 """Verdicts in plain data, by test and number."""
@@ -39,11 +39,10 @@ def summary(told: Told, alpha: float, seed: int) -> list[str]:
 def written(told: Told, crashed: list[str], folder: str, seed: int, alpha: float, exit_code: int, command: str) -> Path:
     """Write the report of a session into a folder, and return its page.
 
-    crashed  tests in which a worker of xdist ended; the verdicts that they had reached are in the folder
+    crashed  tests that ended with their worker of xdist
     """
     from fogproof.reports import prepare_folder, write_report
 
-    left = [case for test in dict.fromkeys(crashed) for case in kept(folder, test, seed)]
     prepare_folder(Path(folder))
     numbers = Counter(test for test, _ in told)
     cases = []
@@ -51,13 +50,12 @@ def written(told: Told, crashed: list[str], folder: str, seed: int, alpha: float
         name = test if numbers[test] == 1 else f"{test} #{number + 1}"
         body = {key: value for key, value in verdict.items() if key != "check"}
         cases.append(case_record(name, body, title=verdict["check"], reproduce=again(test, seed)))
-    names = {case["name"] for case in cases}
-    cases += [case for case in left if case["name"] not in names]
     ended = "its process ended before it was finished"
     cases += [
-        case_record(test, None, status="error", reason=ended, reproduce=again(test, seed))
+        case_record(
+            f"{test} (end)" if numbers[test] else test, None, status="error", reason=ended, reproduce=again(test, seed)
+        )
         for test in dict.fromkeys(crashed)
-        if test not in names
     ]
     now = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
     seconds = sum(float(verdict["seconds"]) for verdict in told.values())

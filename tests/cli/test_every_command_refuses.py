@@ -206,3 +206,22 @@ def test_an_integer_beyond_all_numbers(filled: Callable[[list[str]], list[str]],
     end = here(Run([command, *words]))
     refused(end)
     assert b"an integer has too many digits" in end.err
+
+
+@pytest.mark.parametrize("value", ["1979-05-27", "07:32:00", "1979-05-27T07:32:00Z", "[[1, 1979-05-27]]"])
+@pytest.mark.parametrize("command", ["plan", "study", "check", "export", "oracle", "compare", "render", "relations"])
+def test_a_date(filled: Callable[[list[str]], list[str]], command: str, value: str) -> None:
+    """TOML has dates and times, and nothing that is read here has."""
+    words = filled(next(call for call in READS[command][::-1] if "{bad}.toml" in call))
+    Path("bad.toml").write_text(f"purpose = {value}\nmedium = {{ sigma_a = {value} }}\n")
+    end = here(Run([command, *words]))
+    refused(end)
+    assert b"is a date or a time, and no key takes one: put it in quotes" in end.err, end.err
+
+
+def test_a_date_in_a_scene_that_a_spec_names(filled: Callable[[list[str]], list[str]]) -> None:
+    Path("scene.toml").write_text("purpose = 1979-05-27\n")
+    Path("bad.toml").write_text("scene = 'scene.toml'\n")
+    end = here(Run(["check", *filled(["{npy}", "--spec", "{bad}.toml"])]))
+    refused(end)
+    assert b"scene.toml: purpose = 1979-05-27 is a date or a time" in end.err, end.err

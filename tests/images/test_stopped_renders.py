@@ -1,5 +1,6 @@
 """A run of a renderer goes on wherever it was stopped, and what it keeps is what it wrote."""
 
+import hashlib
 import json
 import os
 import re
@@ -9,7 +10,7 @@ import numpy as np
 import pytest
 from fuzz_commands import Run, here
 
-from fogproof.images import relation_run, renders
+from fogproof.images import kept, relation_run, renders
 from fogproof.reports import files
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -126,6 +127,19 @@ def test_an_image_of_a_relation_that_was_changed_is_rendered_again():
     assert here(Run(RELATIONS)).code in DONE
     assert rendered() == before + 1
     assert image.read_bytes() == content
+
+
+@pytest.mark.parametrize("words", [RENDER, RELATIONS], ids=lambda words: words[0])
+def test_an_image_beyond_the_bound_is_refused_before_it_is_read(monkeypatch, words):
+    with Path("image.npy").open("wb") as file:  # sparse, and linked by the renderer
+        np.lib.format.write_array_header_1_0(file, {"descr": "<f8", "fortran_order": False, "shape": (20_000, 20_000)})
+        file.truncate(file.tell() + 20_000 * 20_000 * 8)
+    read = []
+    monkeypatch.setattr(kept.hashlib, "file_digest", lambda file, _: read.append(file.name) or hashlib.blake2b())
+    end = here(Run([word.replace("cp image.npy", "ln image.npy") for word in words]))
+    assert end.code in (2, 3)
+    assert b"claims 20000 x 20000 pixels" in end.out + end.err
+    assert not [name for name in read if "exr" in str(name)]
 
 
 def test_a_folder_that_is_removed_during_its_render_is_a_sentence():

@@ -272,6 +272,25 @@ LOST = """
         except AssertionError:
             pytest.xfail("no")
 
+    @pytest.mark.xfail(raises=ZeroDivisionError)
+    def test_divides(fogproof):
+        try:
+            reject(fogproof)
+        except AssertionError:
+            pass
+        1 / 0
+
+    @pytest.mark.xfail(raises=(ZeroDivisionError, AssertionError))
+    def test_either(fogproof):
+        test_divides(fogproof)
+
+    @pytest.mark.xfail(raises=KeyError)
+    def test_renamed(fogproof):
+        try:
+            reject(fogproof)
+        except AssertionError:
+            raise KeyError
+
     @pytest.mark.xfail(raises=Exception)
     def test_xpassed(fogproof):
         try:
@@ -310,6 +329,9 @@ def test_a_rejection_fails_its_test_whoever_catches_it(tmp_path):
         "test_caught": "FAILED",
         "test_skipped": "FAILED",
         "test_xfailed": "FAILED",
+        "test_divides": "FAILED",
+        "test_either": "XFAIL",
+        "test_renamed": "XFAIL",
         "test_xpassed": "FAILED",
         "test_running": "PASSED ERROR",
         "test_expected": "XFAIL",
@@ -320,7 +342,7 @@ def test_a_rejection_fails_its_test_whoever_catches_it(tmp_path):
     assert "check_estimator still runs where test_running ends" in out.stdout
     assert "called by the fixture of test_mine.py::test_kept, which had ended" in out.stdout
     cases = json.loads((tmp_path / "report" / "results.json").read_text())["cases"]
-    assert [case["status"] for case in cases if "running" not in case["name"]] == ["rejected"] * 6
+    assert [case["status"] for case in cases if "running" not in case["name"]] == ["rejected"] * 9
 
 
 FORKS = """
@@ -541,6 +563,42 @@ def test_what_a_worker_had_found_when_it_was_ended_is_on_the_page(tmp_path):
     record = json.loads((tmp_path / "report" / "results.json").read_text())
     last = [case["status"] for case in record["cases"] if "test_last" in case["name"]]
     assert (sorted(last), record["state"], len(record["cases"])) == (["error", "rejected"], "finished", 4)
+
+
+CRASHES = """
+    import os, pathlib, shutil, tempfile
+
+    def test_crashes(fogproof):
+        flag = pathlib.Path("flag")
+        if not flag.exists():
+            flag.touch()
+            shutil.rmtree(tempfile.gettempdir())
+            {find}
+            os._exit(0)
+        fogproof.check_estimator(lambda rng, n: rng.random(n), 0.5, samples=2000)
+"""
+FIND = {
+    "rejected": "try: fogproof.check_estimator(lambda rng, n: rng.random(n), 0.9, samples=2000)",
+    "forked": "try: os.fork() or fogproof.check_estimator(lambda rng, n: rng.random(n), 0.9, samples=2000); os.wait()",
+    "right": "try: fogproof.check_estimator(lambda rng, n: rng.random(n), 0.5, samples=2000)",
+}
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs to fork, and to remove what is open")
+@pytest.mark.parametrize(("find", "page"), [("rejected", False), ("forked", True), ("right", True)])
+def test_another_try_takes_no_rejection_back_where_the_first_ended_its_worker(tmp_path, monkeypatch, find, page):
+    """Though the test empties the folder of temporary files."""
+    (tmp_path / "t").mkdir()
+    monkeypatch.setenv("TMPDIR", str(tmp_path / "t"))
+    text = CRASHES.format(find=f"{FIND[find]}\n            except BaseException: pass")
+    out = run(tmp_path, text, "-n", "1", "--reruns", "1", *([f"--fogproof-report={tmp_path}/page"] if page else []))
+    assert "1 passed, 1 rerun" in out.stdout, out.stdout + out.stderr
+    assert out.returncode == (find != "right")
+    assert ("rejected, and run again; the seed is the same" in out.stdout) == (find != "right")
+    if page:
+        record = json.loads((tmp_path / "page" / "results.json").read_text())
+        assert [case["status"] for case in record["cases"]] == ["passed" if find == "right" else "rejected"]
+        assert record["exit_code"] == (find != "right")
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs to fork")

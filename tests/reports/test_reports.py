@@ -15,7 +15,9 @@ from report_records import HOSTILE, case, record, typical
 
 from fogproof.errors import FogproofError, InvalidInputError
 from fogproof.reports import read_record, write_report
+from fogproof.reports.files import write_file, write_output
 from fogproof.reports.pages.junit import write_junit
+from fogproof.reports.pages.templates import keys
 from fogproof.reports.records.runs import parse_record, write_csv, write_record
 from fogproof.reports.text import anchor, file_stem
 from fogproof.text import visible
@@ -35,6 +37,14 @@ def test_round_trip_keeps_every_value(tmp_path):
     run = parse_record(got)
     assert run.cases[0].verdict.findings[0].statistic == math.inf
     assert math.isnan(run.cases[1].verdict.findings[0].effect)
+
+
+def test_a_lone_surrogate_ends_no_page_and_no_file(tmp_path):
+    half = HOSTILE["surrogate"]
+    told = str(keys(half))
+    assert told == "half \N{REPLACEMENT CHARACTER}"
+    assert write_file(tmp_path / "page", half).read_text() == "half ?"
+    assert write_output(tmp_path / "output", half).read_text() == "half ?"
 
 
 def test_report_has_all_its_files(tmp_path):

@@ -1,7 +1,9 @@
 """Checks collected in a run: every check that fogproof has may be among them, and they share one false-alarm probability."""
 
+import copy
 import functools
 import os
+import pickle
 import threading
 from concurrent.futures import ThreadPoolExecutor
 
@@ -9,7 +11,7 @@ import numpy as np
 import pytest
 
 import fogproof
-from fogproof.errors import InvalidValueError
+from fogproof.errors import InvalidValueError, UnsupportedError
 
 
 def uniform(rng, n):
@@ -97,6 +99,8 @@ def test_an_interrupted_check_is_not_judged(interruptible):
     [
         (lambda: fogproof.Run(seed=-1), "seed"),
         (lambda: fogproof.Run().check(3, fogproof.check_estimator, uniform, 0.5), "name must be a string"),
+        (lambda: fogproof.Run().check("x" * 201, fogproof.check_estimator, uniform, 0.5), "must have at most 200"),
+        (lambda: fogproof.Run().add("x" * 201, fogproof.check_estimator(uniform, 0.5, samples=100)), "at most 200"),
         (lambda: fogproof.Run().add("x", 3), "verdict must be a Verdict"),
         (lambda: fogproof.Run().add(fogproof.check_estimator(uniform, 0.5, samples=100), "x"), "must be a"),
     ],
@@ -125,3 +129,15 @@ def test_a_rejection_in_a_forked_process_is_the_runs():
     os.waitpid(child, 0)
     assert run.exit_code == 1
     assert [(case["name"], case["status"]) for case in run.record()["cases"]] == [("wrong", "rejected")]
+
+
+@pytest.mark.parametrize("another", [copy.copy, copy.deepcopy, pickle.dumps])
+def test_there_is_no_copy_of_a_run_to_judge_into_nothing(another):
+    with pytest.raises(UnsupportedError, match=r"for what the copy finds would be lost: .*run.add"):
+        another(fogproof.Run(seed=1))
+
+
+def test_a_verdict_of_another_process_can_be_added():
+    run = fogproof.Run(seed=1)
+    run.add("wrong", pickle.loads(pickle.dumps(fogproof.check_estimator(uniform, 0.9, samples=2000))))
+    assert run.exit_code == 1

@@ -99,7 +99,9 @@ def test_files_that_are_no_studies_are_told(tmp_path, text):
 def test_a_date_is_no_title(tmp_path):
     file = tmp_path / "study.toml"
     file.write_text("title = 2020-01-01\n" + toml(SMALL))
-    with pytest.raises(FogproofError, match=r"study\.toml: 2020-01-01 is a date or a time, .*: put it in quotes"):
+    with pytest.raises(
+        FogproofError, match=r"study\.toml: title = 2020-01-01 is a date or a time, .*: put it in quotes"
+    ):
         read_study(file)
 
 

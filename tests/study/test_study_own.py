@@ -154,6 +154,9 @@ DECLARING = """
         ("of_object", "self.bounds = (1, 0)", "bounds must be two finite numbers"),
         ("of_class", "bias = True", "bias must be a text, got True; say in words why"),
         ("of_class", "title = 3", "title must be a text, got 3"),
+        ("of_class", "title = 'z\\ud800'", "title must be free of lone surrogates"),
+        ("of_class", "bias = '\\udfff'", "bias must be free of lone surrogates"),
+        ("of_class", "title = 'z' * 201", "title must have at most 200 characters"),
     ],
 )
 def test_what_breaks_its_contract_is_named_before_anything_runs(tmp_path, name, value, rule):

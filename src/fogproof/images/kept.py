@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from fogproof.images.formats import LARGEST
 from fogproof.reports.files import write_file
 
 RECORD = "row.json"
@@ -58,9 +59,9 @@ def kept(place: Path, key: str) -> Kept | None:
 
 
 def digest_of(path: Path) -> str:
-    """Return the checksum of a file, "" if there is none that can be read."""
+    """Return the checksum of a file, "" if there is none that can be read, or it is larger than any image of ours."""
     try:
-        if not path.is_file():
+        if not path.is_file() or path.stat().st_size > 2 * LARGEST:
             return ""
         with path.open("rb") as file:
             return hashlib.file_digest(file, "blake2b").hexdigest()[:32]

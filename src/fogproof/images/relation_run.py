@@ -18,7 +18,6 @@ from fogproof.errors import FogproofError, UnsupportedError
 from fogproof.images.battery import Battery, ImageRelation, image_relations, planned
 from fogproof.images.kept import digest_of
 from fogproof.images.picture import read_picture
-from fogproof.images.scene_names import scene_names
 from fogproof.relations import Comparison, ImageSetting
 from fogproof.renderers.running import RenderFailure, code_of, render_one
 from fogproof.renderers.table import Renderer
@@ -60,7 +59,6 @@ def run_relations(scenes: Sequence[Path], run: RelationRun, folder: Path) -> Ite
 
     Outcomes are "not rejected", "rejected", "inconclusive", "not rendered" (the renderer has no such thing) and "error".
     """
-    scene_names(scenes)
     for path in scenes:
         try:
             scene = read_image_scene(path)
@@ -133,22 +131,22 @@ class Commands:
         ).hexdigest()
         out, done = self.folder / f"{key}.exr", self.folder / f"{key}.json"
         images = (out, out.with_name(f"{out.name}.npy"))
-        kept = next((one for one in images if _finished(done, one)), None)
-        if kept is None:
+        told = {"format": "fogproof-render-1", **values}
+        image = kept = next((one for one in images if _finished(done, one)), None)
+        if image is None:
             source = self.folder / f"{key}.scene.json"
             prepare_folder(self.folder, tuple(one.name for one in (*images, done, source)), self.run.force)
-            told = {"format": "fogproof-render-1", "state": "unfinished", **values}
-            write_file(done, json.dumps(told))
+            write_file(done, json.dumps(told | {"state": "unfinished"}))
             write_file(source, scene)
             found = render_one(self.run.renderer, source, out, values, self.run.seconds)
             if isinstance(found, RenderFailure):
                 if found.refused:
                     raise UnsupportedError(found.reason, "scene")
                 raise RenderError(found.reason)
-            told |= {"state": "finished", "digest": digest_of(found)}  # only what is whole is taken up again
-            write_file(done, json.dumps(told))
-            kept = found
-        picture = read_picture([kept], setting.scene.camera.film, setting.scene.channels)
+            image = found
+        picture = read_picture([image], setting.scene.camera.film, setting.scene.channels)
+        if kept is None:  # only what is whole, and can be read, is taken up again
+            write_file(done, json.dumps(told | {"state": "finished", "digest": digest_of(image)}))
         return np.asarray(picture.renders[0])
 
     def _values(self, setting: ImageSetting, scene: str, which: int) -> dict[str, str]:

@@ -18,6 +18,7 @@ from fogproof.checks.subject import Precision, Subject
 from fogproof.contracts import Draw
 from fogproof.domains import Discrete
 from fogproof.errors import InvalidInputError, NotInstalledError, SubjectError
+from fogproof.input_files import read_toml
 from fogproof.pipe.columns import columns_of
 from fogproof.pipe.entries import with_its_table
 from fogproof.pipe.estimator import PipeEstimator, by_order, draws_of
@@ -29,7 +30,7 @@ from fogproof.pipe.ratios import check_ratios
 from fogproof.pipe.recorded import Recorded, check_recorded
 from fogproof.pipe.sampler import PipeSampler, draw_of, misread
 from fogproof.pipe.seeds import function_of_its_seed
-from fogproof.pipe.spec import Spec, read_table, spec_of
+from fogproof.pipe.spec import Spec, spec_of
 from fogproof.pipe.truth import KnownLaw, expectation_of, truth_of
 
 SAMPLES = 1_000_000
@@ -70,7 +71,7 @@ def check_program(
     spec     a TOML file, or its table
     """
     settings = settings or Settings()
-    table, origin = (spec, "spec") if isinstance(spec, Mapping) else (read_table(spec), str(spec))
+    table, origin = (spec, "spec") if isinstance(spec, Mapping) else (read_toml(spec, "the spec file"), str(spec))
     for name in ("columns", "type"):
         if name in table:
             raise InvalidInputError(
@@ -111,7 +112,7 @@ def _digits(verdict: Verdict, numbers: np.ndarray | None) -> tuple[str, ...]:
 def check_file(path: str | Path, spec: str | Path | Mapping[str, Any], settings: Settings | None = None) -> Checked:
     """Judge the samples or realisations in a file."""
     settings = settings or Settings()
-    table, origin = (spec, "spec") if isinstance(spec, Mapping) else (read_table(spec), str(spec))
+    table, origin = (spec, "spec") if isinstance(spec, Mapping) else (read_toml(spec, "the spec file"), str(spec))
     base = spec_of(table, origin)
     if base.family:
         raise InvalidInputError(

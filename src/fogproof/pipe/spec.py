@@ -15,7 +15,7 @@ from fogproof import domains
 from fogproof.checks.subject import Precision
 from fogproof.domains import Domain
 from fogproof.errors import InvalidInputError, InvalidValueError, shorten
-from fogproof.input_files import parse_toml, read_text
+from fogproof.input_files import read_toml
 from fogproof.pipe.protocol import ESTIMATOR_COLUMNS, SAMPLER_COLUMNS
 from fogproof.pipe.tables import Interpolation
 from fogproof.scene import AnyMedium, PhaseFunction, Ray, Scene
@@ -131,14 +131,6 @@ _OF_SAMPLERS = (
 )
 
 
-def read_table(path: str | Path, what: str = "the spec file") -> dict[str, Any]:
-    """Return the table of a TOML file."""
-    try:
-        return parse_toml(read_text(path, what))
-    except (ValueError, RecursionError) as error:
-        raise InvalidInputError(f"{path} is not valid TOML: {error}", str(path)) from None
-
-
 def spec_of(table: Mapping[str, Any], origin: str, parameters: Mapping[str, float] | None = None) -> Spec:
     """Return the spec of a table with "$name" replaced by parameters: those given, else its own, else a first member of the family.
 
@@ -150,7 +142,7 @@ def spec_of(table: Mapping[str, Any], origin: str, parameters: Mapping[str, floa
     values = {**first, **(own if isinstance(own, dict) else {}), **(parameters or {})}
     filled = {key: _filled(item, values, origin) for key, item in table.items() if key not in ("family", "domain")}
     if isinstance(filled.get("scene"), str):
-        filled["scene"] = read_table(Path(origin).parent / filled["scene"], "the scene file")
+        filled["scene"] = read_toml(Path(origin).parent / filled["scene"], "the scene file")
     fields = read_fields(_TYPES, filled, origin)
     fields |= {"events": fields["events"] or {}, "parameters": {**(fields["parameters"] or {}), **values}}
     domain = _domain(_filled(table["domain"], values, origin), origin) if "domain" in table else None

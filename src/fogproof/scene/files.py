@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from fogproof.errors import FogproofError, InvalidInputError, InvalidValueError, shorten
-from fogproof.input_files import parse_json, parse_toml, read_text
+from fogproof.input_files import parse_json, read_text, read_toml
 from fogproof.scene.image_scenes import ImageScene
 from fogproof.scene.known_keys import known_keys
 from fogproof.scene.scenes import Scene
@@ -52,19 +52,15 @@ def read_image_scenes(paths: Iterable[str | Path]) -> list[ImageScene]:
 
 
 def _table(path: Path) -> dict[str, Any]:
-    text = read_text(path, "the scene file")
     if path.suffix == ".json":
         try:
-            table = parse_json(text)
+            table = parse_json(read_text(path, "the scene file"))
         except (ValueError, RecursionError) as error:
             raise InvalidInputError(f"{path} is not valid JSON: {error}", str(path)) from None
         if not isinstance(table, dict):
             raise InvalidInputError(f"{path}: must be a table of keys, got {shorten(table)}", str(path))
         return table
-    try:
-        table = parse_toml(text)
-    except (ValueError, RecursionError) as error:
-        raise InvalidInputError(f"{path} is not valid TOML: {error}", str(path)) from None
+    table = read_toml(path, "the scene file")
     if isinstance(table.get("scenes"), list):
         raise InvalidInputError(f"{path} is a study, not a scene: `fogproof study {path} -o DIR` runs it", "scenes")
     return table

@@ -16,7 +16,7 @@ import numpy as np
 
 from fogproof.checks.arguments import alpha_of
 from fogproof.errors import FogproofError, InvalidInputError, InvalidValueError, shorten
-from fogproof.input_files import parse_toml, read_text
+from fogproof.input_files import read_toml
 from fogproof.scene.files import read_fields
 from fogproof.study.media import sha256_of
 from fogproof.study.methods.table import OWN, MethodField
@@ -100,26 +100,17 @@ class Study:
 def read_study(path: str | Path) -> Study:
     """Read a study file; every fault is a `FogproofError` that names the file and the key."""
     path = Path(path)
-    text = read_text(path, "the study file")
-    try:
-        table = parse_toml(text)
-    except (ValueError, RecursionError) as error:
-        raise InvalidInputError(f"{path} is not valid TOML: {error}", str(path)) from None
+    table = read_toml(path, "the study file")
     if "scenes" not in table and "ray" in table:
         raise InvalidInputError(
             f"{path} is a scene, not a study: scenes is missing; put it into a [[scenes]] table", "scenes"
         )
     folder = str(path.resolve().parent)
     try:
-        text = json.dumps(_normalised(table, folder), sort_keys=True, default=_no_text)
+        text = json.dumps(_normalised(table, folder), sort_keys=True)
     except FogproofError as error:
         raise InvalidInputError(f"{path}: {error}", error.path) from None
     return study_of(text, folder, str(path))
-
-
-def _no_text(value: Any) -> str:
-    """Refuse what TOML knows and JSON does not: nothing in a study is a date."""
-    raise InvalidInputError(f"{value} is a date or a time, and no key of a study takes one: put it in quotes")
 
 
 def study_of(text: str, folder: str, origin: str = "study") -> Study:

@@ -31,6 +31,9 @@ from fogproof.study.own_code import digest_of, loaded
 from fogproof.study.question import Question
 from fogproof.validate import number
 
+LONGEST_TITLE = 200
+"""Characters of a title: it stands in tables and figures."""
+
 
 @dataclass(frozen=True)
 class Own(Method):
@@ -91,7 +94,11 @@ class Own(Method):
     @property
     def title(self) -> str:
         """Its own, or its name."""
-        return self._words("title", "give its name in words, or None") or self.source
+        fix = "give its name in words, or None"
+        said = self._words("title", fix)
+        if len(said) > LONGEST_TITLE:
+            raise InvalidValueError(f"{self.source}: title", f"must have at most {LONGEST_TITLE} characters", said, fix)
+        return said or self.source
 
     @property
     def dimensions(self) -> int | None:
@@ -112,6 +119,8 @@ class Own(Method):
         said = getattr(self._maker(), name, None)
         if said is not None and not isinstance(said, str):
             raise InvalidValueError(f"{self.source}: {name}", "must be a text", said, fix)
+        if said and any(0xD800 <= ord(letter) <= 0xDFFF for letter in said):
+            raise InvalidValueError(f"{self.source}: {name}", "must be free of lone surrogates", said, fix)
         return said or ""
 
     def _maker(self) -> Any:
