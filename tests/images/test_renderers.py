@@ -129,6 +129,17 @@ def test_no_renders_replace_what_others_wrote_or_leave_their_folder(tmp_path):
     assert run("render", tmp_path / "wall.toml", "--with", command, "-o", folder).return_value == 0
 
 
+@pytest.mark.parametrize("name", ["index.html", "results.json", "INDEX.HTML", ".."])
+@pytest.mark.parametrize("command", ["render", "relations"])
+def test_a_scene_is_not_called_as_what_stands_beside_it(tmp_path, command, name):
+    scene = tmp_path / f"{name}.toml"
+    scene.write_text(WALL)
+    rendering = f"touch {tmp_path}/rendered {{scene}} {{out}}"
+    told = run(command, scene, "--with", rendering, "-o", tmp_path / "out")
+    assert f"written into the folder {name!r}" in str(told.exception)
+    assert {path.name for path in tmp_path.iterdir()} == {scene.name}
+
+
 SCENES_LAMP = WALL.replace('"none"', '"single"') + "light = { position = [0, 1, 1], intensity = 1 }\n"
 
 

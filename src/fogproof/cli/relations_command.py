@@ -77,6 +77,7 @@ def command(
     \b
     Example:  fogproof relations scenes/images/sun.toml --with mitsuba -o build/relations
     """
+    from fogproof.images.scene_names import PAGE, scene_names
     from fogproof.scene.files import read_image_scenes
 
     chosen = renderer_of(renderer)
@@ -87,8 +88,9 @@ def command(
         chosen, ways, samples, renders, seed, tolerance, alpha, python, only, not no_oracle, seconds, force
     )  # fmt: skip
     read_image_scenes(scenes)  # what cannot be read is told before hours of rendering
+    scene_names(scenes)
     require_command(chosen, python)
-    take(folder, ("index.html", "results.json"), force)
+    take(folder, PAGE, force)
     rows: list[dict[str, Any]] = []
     asked = count_relations(scenes, run, folder)
     with interruptible() as stop:

@@ -63,7 +63,7 @@ def command(
     \b
     Example:  fogproof render scenes/images/*.toml --with mitsuba -o build/mitsuba
     """
-    from fogproof.images.scene_names import scene_names
+    from fogproof.images.scene_names import PAGE, scene_names
     from fogproof.reports.files import prepare_folder
     from fogproof.scene.files import read_image_scenes
 
@@ -71,7 +71,7 @@ def command(
     read_image_scenes(scenes)  # what cannot be read is told before hours of rendering
     require_command(wanted.renderer, python)
     names = scene_names(scenes)
-    take(folder, ("index.html", "results.json"), force)
+    take(folder, PAGE, force)
     for name in names:
         if (folder / name).exists():
             prepare_folder(folder / name, WRITTEN, force)

@@ -18,7 +18,6 @@ from fogproof.errors import FogproofError, UnsupportedError
 from fogproof.images.battery import Battery, ImageRelation, image_relations, planned
 from fogproof.images.kept import digest_of
 from fogproof.images.picture import read_picture
-from fogproof.images.scene_names import scene_names
 from fogproof.relations import Comparison, ImageSetting
 from fogproof.renderers.running import RenderFailure, code_of, render_one
 from fogproof.renderers.table import Renderer
@@ -60,7 +59,6 @@ def run_relations(scenes: Sequence[Path], run: RelationRun, folder: Path) -> Ite
 
     Outcomes are "not rejected", "rejected", "inconclusive", "not rendered" (the renderer has no such thing) and "error".
     """
-    scene_names(scenes)
     for path in scenes:
         try:
             scene = read_image_scene(path)
