@@ -6,8 +6,10 @@ each point: the change of variables, as an inequality that no right sampler brea
 and chance has no part in it but in which uniforms are looked at: what 1e9 samples could not show is seen to five digits.
 
 It is asked where as many uniforms matter as points have coordinates. The derivative is taken in the coordinates of the domain's
-known law by central differences of fourth order (Abramowitz & Stegun 1964, 25.3.6), and believed where three steps agree; jumps
-are passed over. Averages over parts are judged, not single points: a table of the inverse cdf is right on average alone.
+known law by central differences of fourth order (Abramowitz & Stegun 1964, 25.3.6), and believed where three steps agree.
+Averages over parts are judged, not single points: a table of the inverse cdf is right on average alone. A part is rejected only
+if differences over a billionth of the way say so too: seen from afar a table of a million cells is a straight line. Uniforms
+without a derivative may lead anywhere, also where their neighbours lead: their share is allowed for.
 """
 
 from __future__ import annotations
@@ -28,37 +30,50 @@ from fogproof.errors import shorten
 NAME = "pdf against the map"
 
 _POINTS, _MOST = 1 << 10, 1 << 12  # uniforms looked at, and at most so many times their dimensions
-_HALVINGS = 5  # of the points: 32 parts
+_PART = 32  # uniforms of a part
 _STEPS = (0.03, 0.01, 0.003, 1e-3, 3e-4, 1e-4)  # of the way to the nearer end of a uniform
+_FINE, _FINEST_BITS = 1e-9, 10  # another such step, but of so many bits of a uniform at least
 _STENCIL = np.array([-1.0, -0.5, 0.5, 1.0])  # places in steps
 _WEIGHTS = np.array([1.0, -8.0, 8.0, -1.0]) / 6  # over the step
 _AGREE: dict[Precision, float] = {"float64": 1e-4, "float32": 1e-3}  # relative, of three steps
+_ROUGH, _MOSTLY = (
+    1e-2,
+    0.5,
+)  # relative difference of the fine step; with more at half of the uniforms there is no derivative
 _TOLERANCE: dict[Precision, float] = {"float64": 2e-5, "float32": 4e-4}  # of an average, never rejected
 _DOUBT = 8.0  # standard errors of an average
 _ENOUGH = 0.05  # of the uniforms: with fewer derivatives nothing is said
-_RARE = 21.0  # over the uniforms looked at: what has that probability is met by one of them, but for a chance of 1e-9
+_IDLE = 1 << 17  # uniforms at which a column that nothing seems to depend on is tried once more
+_RARE = 21.0  # over these: what has that probability is met by one of them, but for a chance of 1e-9
 _FEW = 8  # points of a part that have one
 _MOST_AXES = 16
 
 
 @dataclass(frozen=True)
 class MapDensity:
-    """What was seen at uniforms u (n, d) that lead to points x: pdf times derivative (n,), and what steps disagree by (n,).
+    """What was seen at uniforms u (n, k) that lead to points x: pdf times derivative (n,), and what steps disagree by (n,).
 
-    The derivative is NaN where it is not believed. Other uniforms may still matter with the probability `rare`, and lead elsewhere.
+    The derivative is NaN where it is not believed; `fine` is the same by the fine step. Other uniforms may still matter with the
+    probability `rare`, and lead elsewhere.
     """
 
     u: np.ndarray
     x: np.ndarray
     volume: np.ndarray
+    fine: np.ndarray
     doubt: np.ndarray
     rare: float
 
     @property
-    def believed(self) -> MapDensity:
-        """What was seen at points that have a derivative."""
-        told = ~np.isnan(self.volume)
-        return MapDensity(self.u[told], self.x[told], self.volume[told], self.doubt[told], self.rare)
+    def believed(self) -> np.ndarray:
+        """Which uniforms have a derivative (n,)."""
+        return ~np.isnan(self.volume)
+
+    @property
+    def sound(self) -> np.ndarray:
+        """Which have one that the fine step knows of too (n,)."""
+        with np.errstate(all="ignore"):
+            return np.abs(self.fine / self.volume - 1) < _ROUGH
 
 
 def map_density(subject: Subject, points: np.ndarray, seed: int) -> list[Finding]:
@@ -68,38 +83,47 @@ def map_density(subject: Subject, points: np.ndarray, seed: int) -> list[Finding
     law = subject.domain.law(points)
     if law.stepped or len(law.axes) > subject.dimensions:
         return []
-    found = _seen(subject, law, seed)
-    if found is None:
+    seen = _seen(subject, law, seed)
+    if seen is None or np.count_nonzero(seen.believed) < max(_ENOUGH * len(seen.u), _FEW):
         return []
-    believed = found.believed
-    if len(believed.u) < max(_ENOUGH * len(found.u), _FEW):
+    if np.mean(seen.sound[seen.believed]) < _MOSTLY:
         return []
-    return [_judged(subject, believed)]
+    return [_judged(subject, seen)]
 
 
 def _judged(subject: Subject, seen: MapDensity) -> Finding:
-    tolerance = _TOLERANCE[subject.precision] + seen.rare
     worst, where = 0.0, np.empty(0, dtype=int)
-    for part in [np.arange(len(seen.u)), *_parts(seen.u)]:
-        lacking = 1 - seen.volume[part]
-        if len(part) < _FEW or not np.all(np.isfinite(lacking)):
+    scattered = 1 - float(np.mean(seen.sound[seen.believed]))  # among their neighbours: as if by chance
+    for part in _parts(seen.u):
+        told = part[seen.sound[part]]
+        if len(told) < _FEW:
             continue
-        mean = float(np.mean(lacking))
-        doubt = _DOUBT * float(np.std(lacking)) / np.sqrt(len(part)) + float(np.mean(seen.doubt[part]))
-        if mean > max(worst, tolerance + doubt):
-            worst, where = mean, part
+        elsewhere = max(1 - len(told) / len(part), scattered) + seen.rare * len(seen.u) / len(part)
+        known = _least(seen.volume[told]) - float(np.mean(seen.doubt[told]))
+        lacking = min(known, _least(seen.fine[told])) - elsewhere
+        if lacking > max(worst, _TOLERANCE[subject.precision]):
+            worst, where = lacking, told
+    volume = seen.volume[seen.believed]
     if not len(where):
-        return Finding(NAME, "not rejected", _agreement(seen.volume), effect=max(0.0, 1 - float(np.mean(seen.volume))))
-    place = int(where[np.argmax(1 - seen.volume[where])])
+        return Finding(NAME, "not rejected", _agreement(volume), effect=max(0.0, 1 - float(np.mean(volume))))
+    effect = 1 - float(np.mean(seen.volume[where]))
+    place = int(where[np.argmin(seen.volume[where])])
     message = (
         f"where a part of the uniforms leads, as around x = {shorten(seen.x[place])}, samples are"
-        f" {1 / max(1 - worst, 1e-300):.5g} times as dense as the pdf says: it times the derivative of the map is"
-        f" {1 - worst:.5g} there on average, and for a right pdf never less than 1"
+        f" {1 / max(1 - effect, 1e-300):.8g} times as dense as the pdf says: it times the derivative of the map is"
+        f" {1 - effect:.8g} there on average, and for a right pdf never less than 1"
     )
-    alike = bool(np.ptp(seen.volume) < tolerance)
+    alike = bool(np.ptp(volume) < _TOLERANCE[subject.precision])
     if alike:
         message += "; it is the same everywhere: the pdf is too small, or there are points that no uniforms lead to"
-    return Finding(NAME, "rejected", message, effect=worst, cause="skipped band" if alike else "shape")
+    return Finding(NAME, "rejected", message, effect=effect, cause="skipped band" if alike else "shape")
+
+
+def _least(volume: np.ndarray) -> float:
+    """Return what an average (n,) lacks of 1 beyond chance, -inf where it is not known."""
+    spread = float(np.std(volume))
+    lacking = 1 - float(np.mean(volume)) - _DOUBT * spread / np.sqrt(len(volume))
+    return lacking if np.isfinite(lacking) else -np.inf
 
 
 def _agreement(volume: np.ndarray) -> str:
@@ -111,27 +135,38 @@ def _agreement(volume: np.ndarray) -> str:
 
 
 def _parts(u: np.ndarray) -> list[np.ndarray]:
-    """Return the indices of parts of the uniforms (n, d), cut in halves along one axis after the other."""
-    parts = [np.arange(len(u))]
-    for level in range(_HALVINGS):
+    """Return the indices of parts of uniforms (n, k): all, boxes by halves along one axis after the other, slices of each axis."""
+    halves = [np.arange(len(u))]
+    for level in range(int(np.log2(len(u) / _PART))):
         axis = level % u.shape[1]
-        parts = [half for part in parts for half in np.array_split(part[np.argsort(u[part, axis])], 2)]
-    return parts
+        halves = [half for part in halves for half in np.array_split(part[np.argsort(u[part, axis])], 2)]
+    slices = [part for column in u.T for part in np.array_split(np.argsort(column), len(u) // _PART)]
+    return [np.arange(len(u)), *halves, *(slices if u.shape[1] > 1 else [])]
 
 
 def _seen(subject: Subject, law: Law, seed: int) -> MapDensity | None:
     """Return what there is to see, None where more or fewer uniforms matter than there are coordinates."""
     count = min(_POINTS, _MOST // (subject.dimensions or 1))
-    u = subject.uniforms(batch_generator(seed, "map", 0, 0), count).astype(np.float64)
+    rng = batch_generator(seed, "map", 0, 0)
+    u = rng.random((count, subject.dimensions or 0))
     x, at, good = _placed(subject, law, u)
-    axes = [column for column in range(u.shape[1]) if _matters(subject, law, u, column, at)]
+    columns = range(u.shape[1])
+    axes = [column for column in columns if _matters(subject, law, u, column, at)]
     if len(axes) != len(law.axes):
         return None
-    rare = _RARE / len(u) if len(axes) < u.shape[1] else 0.0
-    u, x = u[good], x[good]
-    claimed = subject.density(x) / law.density(x)
-    derivative, doubt = _derivatives(subject, law, u, axes)
-    return MapDensity(u[:, axes], x, claimed * derivative, doubt, rare)
+    rare = 0.0
+    if len(axes) < u.shape[1]:
+        many = rng.random((_IDLE, u.shape[1]))
+        there, rare = _placed(subject, law, many)[1], _RARE / _IDLE
+        if any(_matters(subject, law, many, column, there) for column in columns if column not in axes):
+            return None
+    volume, fine, doubt = np.full((3, count), np.nan)
+    if good.any():
+        claimed = subject.density(x[good]) / law.density(x[good])
+        derivative, doubt[good] = _derivatives(subject, law, u[good], axes)
+        smallest = max(_FINE, 2.0 ** (_FINEST_BITS - (subject.uniform_bits or 53)))
+        volume[good], fine[good] = claimed * derivative, claimed * _derivative(subject, law, u[good], axes, smallest)
+    return MapDensity(u[:, axes], x, volume, fine, doubt, rare)
 
 
 def _matters(subject: Subject, law: Law, u: np.ndarray, column: int, at: np.ndarray) -> bool:
@@ -173,7 +208,7 @@ def _derivative(subject: Subject, law: Law, u: np.ndarray, axes: list[int], step
 
 def _placed(subject: Subject, law: Law, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the points of uniforms, their coordinates (n, k), NaN where there is no density, and where there is one."""
-    draw = subject.draw_at(u.astype(subject.precision))
+    draw = subject.draw_at(u)
     good = inside(subject, draw) & ~at_any_atom(subject, draw.x)
     if draw.valid is not None:
         good &= draw.valid

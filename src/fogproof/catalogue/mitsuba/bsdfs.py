@@ -75,8 +75,6 @@ def _known(name: str, degrees: float) -> dict[str, Any]:
         return {"expected": "rejected", "reason": _WEIGHT}
     if name.startswith("roughplastic") and vectorised() and (name.endswith("ggx") or degrees > 15):
         return {"expected": "rejected", "reason": _BELOW_SURFACE}
-    if (name, degrees) == ("roughconductor/beckmann/alpha=0.4", 80.0):
-        return {"expected": "rejected", "reason": _MASKING}
     return {}
 
 

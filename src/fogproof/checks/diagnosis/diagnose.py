@@ -70,7 +70,8 @@ def diagnosed(
     rejected = [f for f in findings if f.outcome == "rejected"]
     statistical = any(f.p_value is not None and f.cause in _STATISTICAL for f in rejected)
     if {f.check for f in rejected} == {MAP}:  # samples do not show it: they cannot tell its cause
-        return cause, ""
+        known = any(f.check == "normalisation" and f.resolution is not None for f in findings)
+        return cause if known or cause == "shape" else "normalisation", ""
     if cause == "negative pdf":
         return cause, _exponential(subject, samples, seed)
     if cause == "repeated samples":
