@@ -3,7 +3,8 @@
 multiprocessing's server of processes is started here, for it would otherwise share more with us than it should. It gets a session
 of its own, so that a signal to our process group, as a scheduler or a closed terminal sends it, asks us alone. It loads modules
 from where they are installed, not a `random.py` that lies beside a file of cases. Its socket lies where a path is short enough for
-one. The watcher of `children` takes the socket's folder away, and ends what the server forked, however we end.
+one. The watcher of `children` takes the socket's folder away, and ends what the server forked, however we end. Other people's code
+may take it away before, as a fixture does that empties TMPDIR: then there is another server, in another folder.
 """
 
 from __future__ import annotations
@@ -35,6 +36,8 @@ _LONGEST = 60
 _SHORT = "/tmp"
 _WORD = secrets.token_hex(16)
 _lock = threading.Lock()
+_left: list[int] = []
+"""What holds the last server that was left."""
 
 
 def context(preload: list[str]) -> Any:
@@ -48,6 +51,7 @@ def context(preload: list[str]) -> Any:
     with _lock, _modules(), _environment(PYTHONSAFEPATH=os.environ.get("PYTHONSAFEPATH") or OURS):
         with _environment(PYTHONWARNINGS=_quiet(os.environ.get("PYTHONWARNINGS", ""))):
             multiprocessing.resource_tracker.ensure_running()  # before it could carry the word that ends the others
+        _leave_unreachable()
         _make_folder()
         words = f"{children.words_of(os.environ)} {_WORD}"
         with _environment(**{PRELOAD: ",".join(preload), children.WORDS: words}):
@@ -67,7 +71,7 @@ def let_go() -> None:
         if opened is not None:
             with contextlib.suppress(OSError):
                 os.close(opened)
-    vars(server).update(_forkserver_alive_fd=None, _forkserver_address=None, _forkserver_pid=None)
+    _forget(server)
     vars(watcher).update(_fd=None, _pid=None)
 
 
@@ -85,15 +89,42 @@ def _quiet(warnings: str) -> str:
     return ",".join(filter(None, (warnings, "ignore:resource_tracker")))
 
 
+def folder() -> str:
+    """Return the folder of the sockets, "" before there is one."""
+    return str(_settings().get("tempdir") or "")
+
+
+def _settings() -> dict[str, Any]:
+    settings: dict[str, Any] = multiprocessing.current_process()._config  # type: ignore[attr-defined]
+    return settings
+
+
 def _make_folder() -> None:
     """Make the folder in which multiprocessing puts sockets, where their paths are short. It is removed after us, or by us."""
-    settings: dict[str, Any] = multiprocessing.current_process()._config  # type: ignore[attr-defined]
-    if settings.get("tempdir"):
+    if os.path.isdir(folder()):
         return
-    short = _SHORT if len(tempfile.gettempdir()) > _LONGEST and os.access(_SHORT, os.W_OK) else None
-    folder = settings["tempdir"] = tempfile.mkdtemp(prefix=f"fogproof-{os.getpid()}-", dir=short)
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
-    children.remove_after(folder)
+    usual = tempfile.gettempdir()
+    short = _SHORT if os.access(_SHORT, os.W_OK) and (len(usual) > _LONGEST or not os.path.isdir(usual)) else usual
+    made = _settings()["tempdir"] = tempfile.mkdtemp(prefix=f"fogproof-{os.getpid()}-", dir=short)
+    atexit.register(shutil.rmtree, made, ignore_errors=True)
+    children.remove_after(made)
+
+
+def _leave_unreachable() -> None:
+    """Let go of a server whose socket is gone: it ends when what it forked has, and we leave the next or end."""
+    server = multiprocessing.forkserver._forkserver
+    address = getattr(server, "_forkserver_address", None)
+    if address is None or os.path.exists(address):
+        return
+    with server._lock:  # type: ignore[attr-defined]
+        while _left:
+            os.close(_left.pop())
+        _left.append(server._forkserver_alive_fd)  # type: ignore[attr-defined]  # another thread may be about to hand it on
+        _forget(server)
+
+
+def _forget(server: Any) -> None:
+    vars(server).update(_forkserver_alive_fd=None, _forkserver_address=None, _forkserver_pid=None)
 
 
 @contextlib.contextmanager

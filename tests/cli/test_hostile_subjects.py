@@ -3,17 +3,21 @@
 import json
 import multiprocessing.forkserver
 import os
+import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import textwrap
+import time
 from pathlib import Path
 
 import pytest
 from fuzz_commands import Run, here
 from study_fixtures import RAY, toml
 
-from fogproof.checks.limits import isolated, within
+from fogproof import servers
+from fogproof.checks.limits import fresh_process, isolated, within
 from fogproof.errors import Stopped, SubjectError, is_stop, stop_behind
 
 POSIX = pytest.mark.skipif(os.name != "posix", reason="needs a system that can fork")
@@ -193,6 +197,11 @@ def stops_its_parent():
     return 3
 
 
+def says_later(say):
+    time.sleep(1)
+    say("later")
+
+
 def leaves_its_parent_stopped():
     os.kill(os.getppid(), signal.SIGSTOP)
     return 3
@@ -218,6 +227,27 @@ def test_a_server_of_processes_that_is_killed_is_started_again():
     assert isolated(int) == 0
     os.kill(multiprocessing.forkserver._forkserver._forkserver_pid, signal.SIGKILL)
     assert isolated(int) == 0
+
+
+@POSIX
+@pytest.mark.parametrize("whole", [False, True], ids=["its socket", "all temporary files"])
+def test_a_server_of_processes_whose_folder_is_removed_is_started_again(monkeypatch, whole):
+    """Beside another subject, which is still waited for."""
+    temporary = tempfile.mkdtemp()  # of a path that is short enough for sockets
+    monkeypatch.setattr(tempfile, "tempdir", temporary)
+    monkeypatch.setitem(multiprocessing.current_process()._config, "tempdir", None)
+    servers.end()
+    time.sleep(servers.ENDING)
+    beside = fresh_process((), says_later)
+    try:
+        assert Path(servers.folder()).parent == Path(temporary)
+        shutil.rmtree(temporary if whole else servers.folder())
+        assert isolated(int) == 0
+        assert os.path.isdir(servers.folder())
+        assert beside.answer(60) == "later"
+    finally:
+        beside.end()
+        shutil.rmtree(temporary, ignore_errors=True)
 
 
 @POSIX

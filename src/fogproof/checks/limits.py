@@ -85,7 +85,9 @@ class IsolatedProcess:
             self._process.start()
         except (EOFError, OSError) as error:  # EOFError: the server of processes could start none, and ended
             self._pipe.close()
-            if isinstance(error, ConnectionError):  # it was killed a moment ago
+            if isinstance(
+                error, ConnectionError | FileNotFoundError
+            ):  # it was killed, or its socket removed, a moment ago
                 raise
             raise _no_process(error) from None
         finally:
@@ -135,7 +137,7 @@ def fresh_process(preload: Sequence[str], work: Callable[..., None], *arguments:
     for tries in range(_TRIES):
         try:
             return IsolatedProcess(servers.context(list(preload)), work, *arguments)
-        except (ConnectionError, BlockingIOError) as error:  # the server ended meanwhile
+        except (ConnectionError, BlockingIOError, FileNotFoundError) as error:  # the server ended meanwhile
             if tries + 1 == _TRIES:
                 raise _no_process(error) from None
             time.sleep(servers.ENDING)
@@ -147,6 +149,9 @@ def fresh_process(preload: Sequence[str], work: Callable[..., None], *arguments:
 def _no_process(error: BaseException) -> OSError:
     if getattr(error, "errno", None) in (errno.EMFILE, errno.ENFILE):
         return OSError(error.errno, "too many files are open; raise the system's limit (ulimit -n)")  # type: ignore[attr-defined]
+    if isinstance(error, FileNotFoundError):
+        fix = f"what starts them was removed ({error.filename or servers.folder()}): let nothing remove what it has not made"
+        return OSError(error.errno, f"no process could be started; {fix}")
     fix = "end some, or raise the system's limit (ulimit -u)"
     return OSError(getattr(error, "errno", None) or errno.EAGAIN, f"no process could be started; {fix}")
 
