@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import glob
 import hashlib
 import json
 import os
@@ -57,21 +58,24 @@ def prepare_folder(folder: Path, names: tuple[str, ...] = REPORT, force: bool | 
         if path not in ours | lost and (path in marked or not beside):
             fix = "choose another folder" + ("" if force is None else ", or add --force to replace it")
             raise InvalidInputError(f"{path} was not written by fogproof; {fix}", str(path))
-    probe = folder / f".probe.{os.getpid()}"
+    probe = folder / _begun("probe", os.getpid())
     write_file(probe, b"")
     probe.unlink(missing_ok=True)
-    _clear_unfinished(folder, names)
+    _clear_unfinished(folder, (*names, "probe", ".probe.*"))
 
 
 def _clear_unfinished(folder: Path, names: Iterable[str]) -> None:
-    """Remove what killed processes left of files of these names: those under which `write_file` begins them."""
+    """Remove what killed processes left of files of these names (or patterns): what `write_file` had begun."""
     for name in map(Path, names):
-        for path in (folder / name.parent).glob(f".{name.name}.*"):
-            with contextlib.suppress(
-                OSError, ValueError
-            ):  # somebody removes it at the same time; no number of a process
-                if not _runs(int(path.suffix.removeprefix("."))):
+        for path in (folder / name.parent).glob(_begun(name.name, "*")):
+            with contextlib.suppress(OSError, ValueError):  # somebody removes it at the same time; no process's number
+                if not _runs(int(path.name.split(".")[-2])):
                     path.unlink()
+
+
+def _begun(name: str, process: int | str) -> str:
+    """Return the name under which a process begins a file: hidden, and known as ours wherever it is left."""
+    return f".{name}.{process}.fogproof"
 
 
 def _runs(process: int) -> bool:
@@ -187,7 +191,9 @@ def write_output(output: str | Path, content: str | bytes, *sources: str | Path)
     require_other(output, *sources)
     path = Path(output)
     if path.is_file() or not path.exists() or path.is_dir():
-        return write_file(Path(os.path.realpath(path)), content)
+        path = Path(os.path.realpath(path))
+        _clear_unfinished(path.parent, [glob.escape(_short(path.name))])
+        return write_file(path, content)
     try:  # by its own name: what /dev/stdout leads to may have none
         path.write_bytes(_bytes(content))
     except OSError as error:
@@ -197,7 +203,7 @@ def write_output(output: str | Path, content: str | bytes, *sources: str | Path)
 
 def write_file(path: Path, content: str | bytes) -> Path:
     """Put `content` at `path` whole or not at all, making folders on the way; a fault is an `InvalidInputError`."""
-    beside = path.with_name(f".{_short(path.name)}.{os.getpid()}")
+    beside = path.with_name(_begun(_short(path.name), os.getpid()))
     missing = absent(path.parent)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -2,6 +2,7 @@
 
 import fcntl
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -164,13 +165,35 @@ def test_a_record_that_was_cut_says_whose_it_is(tmp_path):
         prepare_folder(tmp_path)
 
 
-def test_what_killed_processes_had_begun_is_cleared(tmp_path):
-    ended = subprocess.Popen([sys.executable, "-c", ""])
-    ended.wait()
-    for name in (".image.png", ".index.html", ".notes.txt"):
-        for process in (ended.pid, os.getpid(), "old"):
-            write_file(tmp_path / ("figures" if name == ".image.png" else "") / f"{name}.{process}", b"half")
-    prepare_folder(tmp_path)
-    left = {path.name for path in tmp_path.rglob(f".*.{ended.pid}")}
-    assert left == {f".notes.txt.{ended.pid}"}  # no name of ours
-    assert len([*tmp_path.rglob(f".*.{os.getpid()}"), *tmp_path.rglob(".*.old")]) == 6
+KILLED = """
+import os, signal, sys
+from pathlib import Path
+from fogproof.reports import files
+def killed(*_, **__):
+    os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs SIGKILL")
+@pytest.mark.parametrize(
+    ("when", "what"),
+    [
+        ("files.os.replace = killed", "files.prepare_folder(Path(sys.argv[1]))"),
+        ("Path.unlink = killed", "files.prepare_folder(Path(sys.argv[1]))"),
+        ("files.os.replace = killed", "files.write_picture(Path(sys.argv[1]) / 'figures/p.svg', '<svg/>')"),
+        ("files.os.replace = killed", "files.write_output(sys.argv[1] + '/s[1].json', 'half')"),
+        ("files.os.replace = killed", "files.write_output(sys.argv[1] + '/' + 'n' * 240, 'half')"),
+    ],
+)
+def test_what_a_killed_process_had_begun_is_cleared_by_the_next(tmp_path, when, what):
+    ended = subprocess.run([sys.executable, "-c", f"{KILLED}\n{when}\n{what}", tmp_path], check=False)
+    assert ended.returncode == -signal.SIGKILL
+    (left,) = [path for path in tmp_path.rglob("*") if path.is_file()]
+    running = left.with_name(f"{left.name.rsplit('.', 2)[0]}.{os.getpid()}.fogproof")
+    others = {running, tmp_path / ".notes.txt.1", tmp_path / ".s[1].json.20240101", tmp_path / ".probe.20240101"}
+    for path in others:
+        path.write_bytes(b"somebody's")
+    again = f"{KILLED}\n{what}\nfiles.prepare_folder(Path(sys.argv[1]))"
+    subprocess.run([sys.executable, "-c", again, tmp_path], check=True)
+    there = {path for path in tmp_path.rglob(".*") if path.is_file()}
+    assert there == others
