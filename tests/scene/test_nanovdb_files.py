@@ -65,6 +65,11 @@ def test_a_grid_is_chosen_by_its_name(tmp_path):
         ({"version": 30}, UnsupportedError, "version 30"),
         ({"box": ((0, 0, 0), (-1, 5, 5))}, InvalidInputError, "empty grid"),
         ({"box": ((0, 0, 0), (100000, 100000, 5))}, UnsupportedError, "more than"),
+        (
+            {"box": ((0, 0, 0), (499, 499, 499))},
+            UnsupportedError,
+            "almost all would be background; cut its bounding box",
+        ),
         ({"matrix": np.zeros((3, 3))}, FogproofError, "must be invertible"),
     ],
 )

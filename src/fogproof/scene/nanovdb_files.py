@@ -37,6 +37,10 @@ FLOAT = 1
 VALUES = 2**27
 """The most values of a grid that is read: 1 GiB as float64."""
 
+FREE, SPARSEST = 2**24, 32
+"""So many values any file may stand for, a larger one so many for each of its bytes: a leaf full of values has a quarter of one a
+byte, and a bounding box with less than a hundredth of it filled is no cloud but a damaged number."""
+
 LARGEST = 2**32
 """The most bytes of a file that is read."""
 
@@ -155,6 +159,12 @@ def _grid(grid: _Bytes, path: Path) -> DenseGrid:
     if np.prod(shape.astype(float)) > VALUES:
         raise UnsupportedError(
             f"{path} says it holds {shape.tolist()}; more than {VALUES} values are not read", str(path)
+        )
+    if np.prod(shape.astype(float)) > FREE + SPARSEST * len(grid.data):
+        raise UnsupportedError(
+            f"{path} says it holds {shape.tolist()} in {len(grid.data)} bytes: almost all would be background; cut its"
+            " bounding box",
+            str(path),
         )
     matrix, offset = grid.array("<f8", 9, 384).reshape(3, 3), grid.array("<f8", 3, 528)
     tiles, background = grid.whole("<I", root + 24), float(grid.read("<f", root + 28)[0])
