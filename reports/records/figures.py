@@ -7,8 +7,12 @@ from typing import Any
 
 from fogproof.errors import InvalidInputError, shorten
 
-_MOST = {"alpha": math.inf, "seconds": math.inf, "cpu_seconds": math.inf, "confidence": 1.0, "p_value": 1.0}
+_MOST = {"alpha": 1.0, "seconds": math.inf, "cpu_seconds": math.inf, "confidence": 1.0, "p_value": 1.0}
 """The largest value of each figure; none is negative, NaN or infinite."""
+_COUNTS = ("samples", "seed")
+"""What no run has below 0; a text or a list among them is judged elsewhere."""
+_SUM = "run"
+"""The kind of run whose alpha counts those of verdicts beside its own, and may come to more than 1."""
 _THEIRS = ("options", "described", "settings", "environment")
 """Tables whose keys are not ours."""
 
@@ -20,7 +24,10 @@ def require_figures(value: Any, origin: str, place: str = "") -> None:
             if key not in _THEIRS:
                 inside = f"{place}.{key}" if place else str(key)
                 if key in _MOST and item is not None:
-                    _require(item, _MOST[key], origin, inside)
+                    sums = inside == "alpha" and value.get("kind") == _SUM
+                    _require(item, math.inf if sums else _MOST[key], origin, inside)
+                elif key in _COUNTS and isinstance(item, int | float):
+                    _require(item, math.inf, origin, inside)
                 require_figures(item, origin, inside)
     elif isinstance(value, list):
         for number, item in enumerate(value):

@@ -35,6 +35,19 @@ def test_an_albedo_of_other_channels_than_the_weights():
         )
 
 
+@pytest.mark.parametrize("albedo", [np.nan, np.inf, -np.inf, (0.5, np.nan), (), [[0.5]], "x"])
+def test_an_albedo_that_cannot_be(albedo):
+    with pytest.raises(InvalidValueError, match=r"^albedo must be"):
+        checked(albedo=albedo)
+
+
+def test_a_mean_weight_may_be_negative():
+    verdict = check_sampler(
+        lambda u: Draw(u[:, 0], weight=-np.ones(len(u))), ones, Interval(0, 1), dimensions=1, albedo=-1, samples=1000
+    )
+    assert verdict.outcome != "rejected"
+
+
 def test_what_is_declared_and_not_looked_at_is_told():
     told = " ".join(checked(albedo=0.5, axis=(0, 0, 1)).unchecked)
     assert "albedo" in told

@@ -77,6 +77,10 @@ def test_json_is_alone_on_stdout(tmp_path):
         ("domain = 'line'\nevents = { medium = 1 }", "events.medium must be a whole number"),
         ("quantity = { quantity = 'nothing' }", "'nothing' is not known"),
         ("domain = 'line'", "is an estimator by its columns"),
+        ("domain = 'line'\nalbedo = nan", "albedo must be finite, got nan"),
+        ("domain = 'line'\nalbedo = [0.5, -inf]", "albedo must be finite, got -inf"),
+        ("domain = 'line'\nuniform_bits = -1", "uniform_bits must be a whole number >= 8"),
+        ("reference = 1\nsamples = -1", "samples must be a whole number >= 1, got -1"),
     ],
 )
 def test_bad_specs_are_told_in_a_sentence(tmp_path, spec, words):
@@ -88,8 +92,8 @@ def test_what_cannot_be_started_is_bad_input(tmp_path, capfd):
     (tmp_path / "spec.toml").write_text("reference = 1")
     for wrong, said in (
         ("./nowhere --g 1", "cannot start './nowhere'"),
-        ("'unclosed", "cannot read the command"),
-        ("", "empty"),
+        ("'unclosed", "--exec is no command line: No closing quotation"),
+        ("", "--exec is empty; give a program and its arguments"),
     ):
         with pytest.raises(SystemExit) as end:
             main(["check", "--spec", str(tmp_path / "spec.toml"), "--exec", wrong])

@@ -13,6 +13,7 @@ from xml.etree import ElementTree
 import pytest
 from report_records import HOSTILE, case, record, typical
 
+import fogproof
 from fogproof.errors import FogproofError, InvalidInputError
 from fogproof.reports import read_record, write_report
 from fogproof.reports.files import write_file, write_output
@@ -96,12 +97,33 @@ def test_a_figure_that_no_run_has_is_refused(tmp_path, name, value):
     for table, place in ((told, name), (told["cases"][0]["verdict"], f"cases.0.verdict.{name}")):
         kept, table[name] = table[name], "planted"
         file.write_text(json.dumps(told).replace('"planted"', value))
-        with pytest.raises(InvalidInputError, match=rf"results.json: {place} must be a finite number >= 0, got "):
+        rule = "must be a finite number >= 0" if name == "seconds" else "must be a number from 0 to 1"
+        with pytest.raises(InvalidInputError, match=rf"results.json: {place} {rule}, got "):
             read_record(tmp_path)
         table[name] = kept
     told["cases"][0]["verdict"]["options"] = {"alpha": "theirs"}
     file.write_text(json.dumps(told))
     read_record(tmp_path)
+
+
+@pytest.mark.parametrize("place", [("alpha",), ("cases", 0, "verdict", "alpha"), ("cases", 0, "verdict", "samples")])
+def test_a_share_above_1_and_a_count_below_0_are_refused(tmp_path, place):
+    write_record(record([case("a")]), tmp_path)
+    told = table = read_record(tmp_path)
+    for key in place[:-1]:
+        table = table[key]
+    table[place[-1]] = -1 if place[-1] == "samples" else 5
+    write_record(told, tmp_path)
+    with pytest.raises(InvalidInputError, match=rf"results.json: {'.'.join(map(str, place))} must be a .*, got "):
+        read_record(tmp_path)
+
+
+def test_alphas_beside_those_of_a_run_may_come_to_more_than_1(tmp_path):
+    run = fogproof.Run(alpha=0.5, seed=1)
+    for name in ("first", "second"):
+        run.add(name, fogproof.check_estimator(lambda rng, n: rng.random(n), 0.5, samples=100, alpha=0.5, seed=1))
+    write_record(run.record(), tmp_path)
+    assert read_record(tmp_path)["alpha"] == 1.5
 
 
 def test_what_is_no_folder_of_a_run_is_said_to_be_none(tmp_path):

@@ -8,9 +8,11 @@ import operator
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 from fogproof.checks.streams import fresh_seed
 from fogproof.errors import InvalidValueError
-from fogproof.validate import as_float_array, number
+from fogproof.validate import as_float_array, number, require
 
 SMALLEST_ALPHA = 1e-100
 """False-alarm probabilities below this are no promise that arithmetic could keep."""
@@ -61,6 +63,14 @@ def seed_of(seed: Any) -> int:
     if value < 0:
         raise InvalidValueError("seed", rule, seed)
     return value
+
+
+def require_albedo(albedo: Any) -> None:
+    """Refuse an albedo that is no finite number, nor a list with one a channel; weights have signs, and so may their mean."""
+    array = as_float_array("albedo", albedo)
+    if array.ndim > 1 or not array.size:
+        raise InvalidValueError("albedo", "must be a number, or a list with one number a channel", albedo)
+    require("albedo", array, np.isfinite(array), "must be finite")
 
 
 def bounds_of(bounds: Any, nonnegative: bool = False) -> tuple[float, float]:

@@ -9,6 +9,7 @@ from typing import Any, get_args
 
 import numpy as np
 
+from fogproof.checks.arguments import require_albedo
 from fogproof.checks.density.lattice import lattice
 from fogproof.checks.streams import fresh_seed
 from fogproof.checks.subject import UNIT_ROUNDOFF, Precision, Subject, in_domain
@@ -51,6 +52,8 @@ def declared(
         number("resolution", resolution, "must lie in (0, 1)", 0, 1, open_ends=True)
     _check_atoms_and_events(subject)
     breaks = _breaks(subject)
+    if subject.albedo is not None:
+        require_albedo(subject.albedo)
     axis = subject.axis
     if axis is not None:
         axis = tuple(unit_vectors("axis", axis).tolist())

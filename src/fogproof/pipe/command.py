@@ -14,9 +14,9 @@ def words_of(command: str | Sequence[str]) -> list[str]:
     try:
         words = shlex.split(command) if isinstance(command, str) else list(command)
     except ValueError as error:
-        raise InvalidInputError(f"cannot read the command {command!r}: {error}", "--exec") from None
+        raise InvalidInputError(f"--exec is no command line: {error}, in {command!r}", "--exec") from None
     if not words or not words[0]:
-        raise InvalidInputError("the command is empty", "--exec")
+        raise InvalidInputError("--exec is empty; give a program and its arguments", "--exec")
     return words
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from fogproof import domains
+from fogproof.checks.arguments import require_albedo
 from fogproof.checks.subject import Precision
 from fogproof.domains import Domain
 from fogproof.errors import InvalidInputError, InvalidValueError, shorten
@@ -147,6 +148,7 @@ def spec_of(table: Mapping[str, Any], origin: str, parameters: Mapping[str, floa
     fields |= {"events": fields["events"] or {}, "parameters": {**(fields["parameters"] or {}), **values}}
     domain = _domain(_filled(table["domain"], values, origin), origin) if "domain" in table else None
     spec = Spec(domain=_implied(fields, domain, origin), folder=Path(origin).parent, family=family, **fields)
+    _require_numbers(spec)
     _require_sense(spec, origin)
     _require_use(spec, table, origin)
     return spec
@@ -175,10 +177,6 @@ def _require_sense(spec: Spec, origin: str) -> None:
         raise InvalidInputError(f"{origin}: one density is enough; give one of {', '.join(laws)}", laws[1])
     if (spec.medium is None) != (spec.ray is None):
         raise InvalidInputError(f"{origin}: medium and ray belong together", "ray")
-    if spec.dimensions is not None and spec.dimensions < 1:
-        raise InvalidValueError(
-            "dimensions", "must be >= 1; leave it out if the program draws its own", spec.dimensions
-        )
     known = SAMPLER_COLUMNS if spec.samples_points else ESTIMATOR_COLUMNS
     for name in spec.columns:
         if name not in known:
@@ -186,6 +184,20 @@ def _require_sense(spec: Spec, origin: str) -> None:
     for label in spec.events:
         if not label.lstrip("-").isdigit():
             raise InvalidInputError(f"{origin}: events.{label} must be a whole number", f"events.{label}")
+
+
+def _require_numbers(spec: Spec) -> None:
+    """Refuse numbers that nothing can have, whether or not the program or file has what they are looked at for."""
+    if spec.dimensions is not None and spec.dimensions < 1:
+        raise InvalidValueError(
+            "dimensions", "must be >= 1; leave it out if the program draws its own", spec.dimensions
+        )
+    if spec.albedo is not None:
+        require_albedo(spec.albedo)
+    for name, least in (("uniform_bits", 8), ("samples", 1)):
+        value = getattr(spec, name)
+        if value is not None and value < least:
+            raise InvalidValueError(name, f"must be a whole number >= {least}", value)
 
 
 def _require_use(spec: Spec, table: Mapping[str, Any], origin: str) -> None:
