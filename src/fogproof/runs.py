@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import datetime
 import functools
 import importlib.metadata
@@ -10,7 +9,6 @@ import json
 import os
 import shlex
 import sys
-import tempfile
 import time
 import weakref
 from collections.abc import Callable, Iterable
@@ -23,6 +21,7 @@ from fogproof.checks.arguments import seed_of, shared_among
 from fogproof.checks.json_values import jsonable
 from fogproof.checks.streams import batch_generator
 from fogproof.errors import InvalidValueError, UnsupportedError
+from fogproof.unnamed import unnamed_file
 from fogproof.validate import number
 from fogproof.verify import ALPHA, SCHEMA, environment
 
@@ -48,7 +47,9 @@ class Run:
         self._started, self._clock = datetime.datetime.now(datetime.UTC), time.perf_counter()
         self._cases: dict[str, dict[str, Any]] = {}
         self._beside = 0.0  # alphas of verdicts that took none of the run's
-        self._process, self._forks = os.getpid(), _file_for_forks(self)
+        self._process, self._forks = os.getpid(), unnamed_file()
+        if self._forks is not None:
+            weakref.finalize(self, os.close, self._forks)
 
     def __getstate__(self) -> NoReturn:
         """Refuse to be copied or pickled: what a copy rejects would be lost."""
@@ -144,16 +145,6 @@ class Run:
 
         prepare_folder(Path(folder))
         return write_report(self.record(), folder)
-
-
-def _file_for_forks(run: Run) -> int | None:
-    """Return a descriptor for what forked processes find, None where nothing forks or there is no place for one."""
-    if hasattr(os, "fork"):
-        with contextlib.suppress(OSError), tempfile.TemporaryFile() as file:
-            number = os.dup(file.fileno())
-            weakref.finalize(run, os.close, number)
-            return number
-    return None
 
 
 def _name_of(check: Callable[..., Verdict]) -> str:

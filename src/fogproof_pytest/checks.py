@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
 import itertools
 import json
 import os
-import tempfile
 from collections import deque
 from collections.abc import Callable
-from typing import IO, Any
+from typing import Any
 
 import fogproof
 from fogproof.checks import InconclusiveError, RejectedError, Verdict
 from fogproof.checks.arguments import shared_among
 from fogproof.errors import InvalidValueError
+from fogproof.unnamed import unnamed_file
 
 
 class Checks:
@@ -41,7 +40,8 @@ class Checks:
         self._calls, self._passes, self._news, self._keep = calls, passes, news, keep
         self._count, self._number, self._running = itertools.count(1), itertools.count(), list[str]()
         self._ended = False
-        self._process, self._forks = os.getpid(), _shared()
+        forks = unnamed_file()
+        self._process, self._forks = os.getpid(), None if forks is None else os.fdopen(forks, "w+b")
 
     def _end(self) -> str:
         """Take no more checks: the test has ended. Return what still runs, "" if nothing does."""
@@ -139,11 +139,3 @@ class Checks:
         """Return a seed that depends on the test's name: another run of it with the session's seed says the same."""
         words = f"{self._seed}/{self._test}/{number}".encode()
         return int.from_bytes(hashlib.blake2b(words, digest_size=8).digest()) >> 2
-
-
-def _shared() -> IO[bytes] | None:
-    """Return a file for what forked processes find, None where nothing forks or there is no place for one."""
-    if hasattr(os, "fork"):
-        with contextlib.suppress(OSError):
-            return tempfile.TemporaryFile()
-    return None

@@ -23,7 +23,7 @@ _SESSIONS, _WORKERS = pytest.StashKey[dict[str, int]](), pytest.StashKey[int]()
 def begin(node: Any) -> None:
     """Make the file of a worker that is to be started."""
     with contextlib.suppress(OSError):  # no place for one
-        number, path = tempfile.mkstemp(prefix="fogproof-")
+        number, path = _file()
         opened = node.config.stash.setdefault(_SESSIONS, {})
         if not opened:
             node.config.add_cleanup(lambda: _close(opened))
@@ -37,7 +37,7 @@ def open_own(config: pytest.Config) -> None:
         with contextlib.suppress(OSError):
             number = config.stash[_WORKERS] = os.open(path, os.O_WRONLY | os.O_APPEND)
             config.add_cleanup(lambda: os.close(number))
-            os.unlink(path)
+            os.unlink(path)  # one in memory has no name
 
 
 def keeper(config: pytest.Config) -> Callable[[str, dict[str, Any] | None, str], None]:
@@ -66,3 +66,14 @@ def found(node: Any, test: str) -> list[tuple[Any, ...]]:
 def _close(opened: dict[str, int]) -> None:
     while opened:
         os.close(opened.popitem()[1])
+
+
+def _file() -> tuple[int, str]:
+    """Return a descriptor and a path of a new file, in memory where the system has that."""
+    with contextlib.suppress(OSError, AttributeError):
+        number = os.memfd_create("fogproof")
+        path = f"/proc/{os.getpid()}/fd/{number}"
+        if os.path.exists(path):
+            return number, path
+        os.close(number)
+    return tempfile.mkstemp(prefix="fogproof-")

@@ -4,6 +4,7 @@ import copy
 import functools
 import os
 import pickle
+import tempfile
 import threading
 from concurrent.futures import ThreadPoolExecutor
 
@@ -108,6 +109,12 @@ def test_an_interrupted_check_is_not_judged(interruptible):
 def test_wrong_arguments_are_explained(wrong, word):
     with pytest.raises(InvalidValueError, match=word):
         wrong()
+
+
+@pytest.mark.skipif(not hasattr(os, "memfd_create"), reason="needs a system with files in memory")
+def test_a_rejection_in_a_forked_process_needs_no_folder(monkeypatch):
+    monkeypatch.setattr(tempfile, "tempdir", "/nowhere")
+    test_a_rejection_in_a_forked_process_is_the_runs()
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs a system that can fork")
