@@ -11,6 +11,7 @@ from fuzz_commands import Run, here
 
 from fogproof import verify
 from fogproof.catalogue import SamplerCase, all_cases, own
+from fogproof.checks import limits
 from fogproof.checks.limits import within
 from fogproof.checks.streams import batch_generator
 from fogproof.errors import FogproofError, InvalidInputError
@@ -234,3 +235,32 @@ def test_a_time_limit_bounds_the_listing_of_cases(tmp_path, where):
     end = here(Run(["verify", path, "--time-limit", "0.3"]))
     words = "ended the process, exit code -9" if where == "end" else "did not return within 0.3 s"
     assert (end.code, f"its cases cannot be listed: the subject {words}" in end.err.decode()) == (2, True), end.err
+
+
+MEANS = """
+from fogproof.catalogue import EstimatorCase
+def cases():
+    return [EstimatorCase(name=name, make=lambda by=by: Mean(by), reference=0.5, samples=2000) for name, by in %s]
+class Mean:
+    def __init__(self, by):
+        self.by = by
+    def draw(self, rng, n):
+        return rng.random(n) + self.by
+"""
+
+
+@pytest.mark.parametrize(("by", "code"), [(0.0, 2), (0.4, 1)])
+def test_verdicts_are_kept_where_no_process_starts_for_a_case(tmp_path, monkeypatch, by, code):
+    def started(preload, work, *arguments):
+        if "my_cases/b" in str(arguments):
+            raise limits.UnstartedError(11, "no process could be started")
+        return fresh_process(preload, work, *arguments)
+
+    fresh_process = limits.fresh_process
+    monkeypatch.setattr(limits, "fresh_process", started)
+    path = written(tmp_path, MEANS % [("a", 0.0), ("b", 0.0), ("c", by)])
+    end = here(Run(["verify", path, "--workers", "1", "--report", str(tmp_path / "page")]))
+    assert (end.code, b"no process could be started\nstopped after 2 of 3 cases" in end.err) == (code, True), end.err
+    record = json.loads((tmp_path / "page" / "results.json").read_text())
+    assert (record["exit_code"], record["state"], record["title"]) == (code, "interrupted", "Unfinished: 2 of 3")
+    assert [case["name"] for case in record["cases"] if case["verdict"]] == ["my_cases/a", "my_cases/c"]

@@ -546,7 +546,8 @@ def test_what_a_session_had_found_when_it_was_ended_is_kept(tmp_path, how):
     run(tmp_path, text, option)
     assert not (folder / "index.html").exists()
     made = subprocess.run([sys.executable, "-m", "fogproof", "report", str(folder)], capture_output=True, text=True)
-    assert made.returncode == 0, made.stderr
+    told = [name in made.stderr for name in ("had rejected", "::test_wrong", "::test_last", "::test_right")]
+    assert (made.returncode, told) == (1, [True, True, True, False]), made.stderr
     record = json.loads((folder / "results.json").read_text())
     found = {case["name"].rpartition("::")[2]: case["status"] for case in record["cases"]}
     assert (found, record["state"]) == (

@@ -72,6 +72,10 @@ _WROTE = "the subject wrote into files that others had opened (descriptors from 
 _CLOSED = "the subject closed files that others had opened (descriptors from 3 on); let it close its own alone"
 
 
+class UnstartedError(OSError):
+    """No process could be started; the sentence says what to do."""
+
+
 class IsolatedProcess:
     """A process for other people's code, behind one that stands between it and us.
 
@@ -133,16 +137,16 @@ def _ended(code: int) -> str:
 
 
 def fresh_process(preload: Sequence[str], work: Callable[..., None], *arguments: Any) -> IsolatedProcess:
-    """Return a process that the server of processes has forked; OSError where there can be none."""
+    """Return a process that the server of processes has forked; `UnstartedError` where there can be none."""
     for tries in range(_TRIES):
         try:
             return IsolatedProcess(servers.context(list(preload)), work, *arguments)
         except (ConnectionError, BlockingIOError, FileNotFoundError) as error:  # the server ended meanwhile
             if tries + 1 == _TRIES:
-                raise _no_process(error) from None
+                raise UnstartedError(*_no_process(error).args) from None
             time.sleep(servers.ENDING)
         except OSError as error:
-            raise _no_process(error) from None
+            raise UnstartedError(*_no_process(error).args) from None
     raise AssertionError("unreachable")
 
 

@@ -12,9 +12,10 @@ from pathlib import Path
 import click
 
 from fogproof.checks import fresh_seed
+from fogproof.checks.limits import UnstartedError
 from fogproof.cli.force import FORCE, take
 from fogproof.cli.signals import interruptible
-from fogproof.cli.terminal import say
+from fogproof.cli.terminal import BAD_INPUT, say
 from fogproof.cli.values import FOLDER, PROBABILITY, SECONDS
 from fogproof.text import one_line, p_value
 from fogproof.verify import ALPHA, Result, exit_code, record, reproduce, run, select, shares
@@ -81,17 +82,24 @@ def command(
     seed = fresh_seed() if seed is None else seed
     started, clock = datetime.datetime.now(datetime.UTC), time.perf_counter()
     results: list[Result] = []
+    unfinished = 0
     width = max(len(case.name) for case in chosen)
     if not as_json:
         say(_row(width, "case", "outcome", "smallest p", "resolution", "samples", "seconds"))
     with interruptible() as stop, _progress(len(chosen)) as advance:
-        for result in run(chosen, seed=seed, alpha=alpha, workers=workers, twins=twins, time_limit=time_limit):
-            results.append(result)
-            if not as_json:
-                advance.print(_describe(width, result))
-            advance(result.case.name)
-    if stop.code:
+        try:
+            for result in run(chosen, seed=seed, alpha=alpha, workers=workers, twins=twins, time_limit=time_limit):
+                results.append(result)
+                if not as_json:
+                    advance.print(_describe(width, result))
+                advance(result.case.name)
+        except UnstartedError as error:
+            say(f"fogproof: {error.strerror}", err=True)
+            unfinished = BAD_INPUT
+    if stop.code or unfinished:
         say(f"stopped after {len(results)} of {len(chosen)} cases; these are kept", err=True)
+    if unfinished and exit_code(results) == 1:  # no lack of processes hides it
+        unfinished = 1
     _explain(results, seed, shares(chosen, alpha))
     if as_json or folder is not None:
         run_record = record(
@@ -102,7 +110,7 @@ def command(
             started=started.isoformat(timespec="seconds"),
             seconds=time.perf_counter() - clock,
             asked=chosen,
-            stopped=stop.code,
+            stopped=stop.code or unfinished,
         )
         if as_json:
             say(json.dumps(run_record))
@@ -110,7 +118,7 @@ def command(
             from fogproof.reports import write_report
 
             say(f"report: {write_report(run_record, folder)}", err=True)
-    return stop.code or exit_code(results)
+    return stop.code or unfinished or exit_code(results)
 
 
 def _row(width: int, *cells: str) -> str:

@@ -14,7 +14,7 @@ from functools import partial
 from typing import Any
 
 from fogproof.catalogue import Case
-from fogproof.checks.limits import end_isolated, isolated
+from fogproof.checks.limits import UnstartedError, end_isolated, isolated
 from fogproof.checks.streams import batch_generator
 from fogproof.errors import FogproofError, NotInstalledError, is_stop
 from fogproof.verify.results import Result, TwinResult, status_of
@@ -43,6 +43,8 @@ def run(
     choosing some of them does not change any verdict. Its random numbers depend on `seed` and its name alone: neither do the
     workers. Cases of a file or a package run in a process of their own, and the catalogue's as well if there is a limit.
 
+    Where no process can be started for a case, the others are run all the same; then comes the `UnstartedError`.
+
     time_limit  most seconds a case may take, None for any
     """
     parts = shares(cases, alpha)
@@ -55,8 +57,16 @@ def run(
             alone = case.origin or time_limit is not None
             job = partial(run_case_alone, time_limit=time_limit) if alone else run_case
             jobs.append(pool.submit(job, case, seed, share, twins))
+        unstarted: UnstartedError | None = None
         for done in as_completed(jobs):
-            yield done.result()
+            try:
+                result = done.result()
+            except UnstartedError as error:
+                unstarted = error
+            else:
+                yield result
+        if unstarted is not None:
+            raise unstarted
     finally:
         pool.shutdown(wait=False, cancel_futures=True)
         while not all(job.done() for job in jobs):  # one that was about to start a process may start it only now
