@@ -10,7 +10,7 @@ The module lies beside the study file or is installed. The class, or a function 
 
 and the class itself may have
 
-    title       how it is called in words; "my_module:Estimator" without one
+    title       how it is called in words, 200 characters at most; "my_module:Estimator" without one
     dimensions  uniforms a realisation, if `draw` is a pure function of rng.random((n, dimensions)): Sobol points are tried then
     bias        why its mean is not the quantity, in words, if it is biased by construction
 
