@@ -98,8 +98,9 @@ def _explained(subject: Subject, cause: str, findings: Sequence[Finding], sample
     """Return the cause and the words; what accounts for a share of the samples does not explain a law that is wrong beside it."""
     setting = setting_of(subject, min(SIZES[0], samples), seed)
     flat = in_a_plane(setting, subject.roundoff) if setting else ("", "")
-    if flat[0]:
-        return flat
+    if flat[0]:  # two opposite azimuths lie in a plane: that they are two says more, but not than two equations do
+        few = _few_values(subject, samples, seed) if flat[1].count(" = ") == 1 else ""
+        return (_COARSE, few) if few else flat
     named, words, rest = ("", "", subject) if cause in _CONSTANT else single_points(subject, samples, seed)
     often = 0.0 if all(whole_columns(subject.domain)) else sum(rest.atoms.values()) - sum(subject.atoms.values())
     few = _few_values(subject, samples, seed) if cause in {_COARSE} | _STATISTICAL else ""
