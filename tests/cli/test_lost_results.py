@@ -189,7 +189,8 @@ def test_an_exit_code_that_is_not_that_of_the_cases_is_named(tmp_path):
         assert ends("report", tmp_path).code == code
     told |= {"state": "interrupted", "exit_code": 130}
     (tmp_path / "results.json").write_text(json.dumps(told))
-    assert ends("report", tmp_path).code == 0
+    end = ends("report", tmp_path)
+    assert (end.code, b"the run was interrupted, and had rejected" in end.err) == (1, True)
 
 
 def test_a_finished_record_that_has_lost_cases_is_named(tmp_path):
