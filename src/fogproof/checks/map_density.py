@@ -36,10 +36,8 @@ _FINE, _FINEST_BITS = 1e-9, 10  # another such step, but of so many bits of a un
 _STENCIL = np.array([-1.0, -0.5, 0.5, 1.0])  # places in steps
 _WEIGHTS = np.array([1.0, -8.0, 8.0, -1.0]) / 6  # over the step
 _AGREE: dict[Precision, float] = {"float64": 1e-4, "float32": 1e-3}  # relative, of three steps
-_ROUGH, _MOSTLY = (
-    1e-2,
-    0.5,
-)  # relative difference of the fine step; with more at half of the uniforms there is no derivative
+_ROUGH = 1e-2  # relative difference of the fine step, with more of which a derivative is not sound
+_MOSTLY = 0.5  # of the derivatives: if fewer are sound nothing is said
 _TOLERANCE: dict[Precision, float] = {"float64": 2e-5, "float32": 4e-4}  # of an average, never rejected
 _DOUBT = 8.0  # standard errors of an average
 _ENOUGH = 0.05  # of the uniforms: with fewer derivatives nothing is said
