@@ -220,7 +220,9 @@ def closes_and_opens_files():
 
 
 @POSIX
-@pytest.mark.parametrize("run", [lambda check: isolated(check, 60), lambda check: within(60, check)], ids=["isolated", "within"])
+@pytest.mark.parametrize(
+    "run", [lambda check: isolated(check, 60), lambda check: within(60, check)], ids=["isolated", "within"]
+)
 def test_the_last_thing_it_does_is_seen(run):
     with pytest.raises(SubjectError, match=KILLED):
         run(kills_its_parent)
