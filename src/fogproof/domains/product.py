@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from fogproof.domains.law import Domain, Law, whole_columns
+from fogproof.domains.law import Domain, Law, vector_columns, whole_columns
 from fogproof.errors import InvalidValueError
 
 
@@ -38,6 +39,13 @@ class Product:
     def whole(self) -> tuple[bool, ...]:
         """Which columns hold whole numbers, which no rounding moves."""
         return tuple(one for part in self.parts for one in whole_columns(part))
+
+    @property
+    def vectors(self) -> tuple[tuple[int, int], ...]:
+        """Which columns hold directions."""
+        starts = itertools.accumulate((math.prod(part.shape) for part in self.parts), initial=0)
+        pairs = zip(starts, self.parts, strict=False)
+        return tuple((start + first, start + last) for start, part in pairs for first, last in vector_columns(part))
 
     @property
     def measure(self) -> float:
