@@ -17,6 +17,7 @@ class Product:
     """Points of several domains side by side, (n, columns of all); the pdf is per product of their measures.
 
     `Product(Interval(0, 1), UnitSphere())` has points (t, x, y, z) and a pdf per unit length and steradian.
+    All columns are floats, those of `Discrete` too: a table beside another coordinate is indexed with x[:, 0].astype(int).
     """
 
     parts: tuple[Domain, ...]
