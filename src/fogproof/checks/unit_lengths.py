@@ -1,8 +1,8 @@
 """Directions have length 1: how far rounding takes one from it in usual samples, and how much further in a few.
 
-Measured in single precision, in roundings of 2^-24: normalised vectors are off by 3, whole BSDFs of Mitsuba 3 by 13, products of ten
-rotations by 9. Cosines by a textbook formula pass 1 by 284 (Henyey-Greenstein, g = 1e-3) to 1100 (von Mises-Fisher, kappa = 1e-3), but
-only at the pole of the lobe, in one of ten thousand samples: there the sine is 0, and the direction is right all the same.
+Measured in single precision, in roundings of 2^-24: normalised vectors are off by 3, whole BSDFs of Mitsuba 3 by 13, products of
+ten rotations by 9. Cosines by a textbook formula pass 1 by 284 (Henyey-Greenstein, g = 1e-3) to 1100 (von Mises-Fisher with
+kappa = 1e-3), but only at the pole of the lobe, in one of ten thousand samples: there the sine is 0, and the direction right.
 """
 
 from __future__ import annotations
