@@ -250,6 +250,8 @@ def _no_folder(folder: Path) -> str:
     """Return in words which part of a folder's path is no folder, "" if none is."""
     with contextlib.suppress(OSError, ValueError):
         for place in (folder, *folder.parents):
+            if place.is_symlink() and not place.exists():
+                return f"{place} is a link that leads nowhere"
             if place.exists():
                 return "" if place.is_dir() else f"{place} is a file, no folder"
     return ""

@@ -110,6 +110,8 @@ def _pass_on(child: int, said: int, word: bytes, to: Any) -> NoReturn:
         while True:
             code = _exit_code(child) if code is None else code
             ready = multiprocessing.connection.wait(watched, _LOOK if code is None else 0.0)
+            if not ready and code is None:
+                os.kill(child, signal.SIGCONT)  # a subject that stops itself would be waited for without end
             if parent.sentinel in ready:
                 break
             if said not in ready:

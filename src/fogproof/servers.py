@@ -17,6 +17,7 @@ import multiprocessing.resource_tracker
 import os
 import secrets
 import shutil
+import signal
 import sys
 import tempfile
 import threading
@@ -52,6 +53,7 @@ def context(preload: list[str]) -> Any:
         with _environment(PYTHONWARNINGS=_quiet(os.environ.get("PYTHONWARNINGS", ""))):
             multiprocessing.resource_tracker.ensure_running()  # before it could carry the word that ends the others
         _leave_unreachable()
+        _wake()
         _make_folder()
         words = f"{children.words_of(os.environ)} {_WORD}"
         with _environment(**{PRELOAD: ",".join(preload), children.WORDS: words}):
@@ -121,6 +123,14 @@ def _leave_unreachable() -> None:
             os.close(_left.pop())
         _left.append(server._forkserver_alive_fd)  # type: ignore[attr-defined]  # another thread may be about to hand it on
         _forget(server)
+
+
+def _wake() -> None:
+    """Tell the server to go on: whoever has stopped it would have us wait for the next process without end."""
+    pid = getattr(multiprocessing.forkserver._forkserver, "_forkserver_pid", None)
+    if pid is not None:
+        with contextlib.suppress(OSError, AttributeError):
+            os.kill(pid, signal.SIGCONT)
 
 
 def _forget(server: Any) -> None:

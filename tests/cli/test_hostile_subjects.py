@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 import textwrap
+import threading
 import time
 from pathlib import Path
 
@@ -207,6 +208,11 @@ def leaves_its_parent_stopped():
     return 3
 
 
+def stops_itself():
+    os.kill(os.getpid(), signal.SIGSTOP)
+    return 3
+
+
 def closes_and_opens_files():
     os.closerange(3, 4096)  # a test runner may have many open
     for number in range(32):
@@ -214,12 +220,15 @@ def closes_and_opens_files():
 
 
 @POSIX
-@pytest.mark.parametrize("run", [isolated, lambda check: within(60, check)], ids=["isolated", "within"])
+@pytest.mark.parametrize(
+    "run", [lambda check: isolated(check, 60), lambda check: within(60, check)], ids=["isolated", "within"]
+)
 def test_the_last_thing_it_does_is_seen(run):
     with pytest.raises(SubjectError, match=KILLED):
         run(kills_its_parent)
     assert run(stops_its_parent) == 3
     assert run(leaves_its_parent_stopped) == 3
+    assert run(stops_itself) == 3
 
 
 @POSIX
@@ -227,6 +236,19 @@ def test_a_server_of_processes_that_is_killed_is_started_again():
     assert isolated(int) == 0
     os.kill(multiprocessing.forkserver._forkserver._forkserver_pid, signal.SIGKILL)
     assert isolated(int) == 0
+
+
+@POSIX
+def test_a_server_of_processes_that_is_stopped_is_told_to_go_on():
+    assert isolated(int) == 0
+    server = multiprocessing.forkserver._forkserver._forkserver_pid
+    os.kill(server, signal.SIGSTOP)
+    found = []
+    asking = threading.Thread(target=lambda: found.append(isolated(int)), daemon=True)
+    asking.start()
+    asking.join(30)
+    os.kill(server, signal.SIGCONT)
+    assert found == [0]
 
 
 @POSIX

@@ -158,6 +158,16 @@ def test_a_closed_stdin_is_a_sentence(monkeypatch, words):
     assert (end.code, b"stdin is closed" in end.err) == (2, True)
 
 
+@pytest.mark.parametrize(("stdin", "stdout"), [("ab", "wb"), ("rb", "rb")], ids=["stdin", "stdout"])
+def test_a_stream_that_is_open_the_other_way_is_a_sentence(tmp_path, stdin, stdout):
+    for name in ("in", "out"):
+        (tmp_path / name).write_text("{}\n")
+    with (tmp_path / "in").open(stdin) as given, (tmp_path / "out").open(stdout) as taken:
+        words = [sys.executable, "-m", "fogproof", "oracle", "-"]
+        done = subprocess.run(words, stdin=given, stdout=taken, stderr=subprocess.PIPE)
+    assert (done.returncode, b"turn the arrows round" in done.stderr) == (2, True), done.stderr
+
+
 def test_an_outcome_that_there_is_not_is_named(tmp_path):
     told = record()
     told["cases"][0]["verdict"]["outcome"] = "splendid"

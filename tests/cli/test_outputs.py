@@ -98,6 +98,9 @@ def test_any_name_that_a_system_of_files_takes_can_be_written(tmp_path):
     assert len(os.listdir(tmp_path)) == 4
     with pytest.raises(InvalidInputError, match=f"{'n' * 4}/x: .*{'n' * 4} is a file, no folder"):
         write_file(tmp_path / "nnnn" / "x", "")
+    (tmp_path / "link").symlink_to(tmp_path / "nowhere")
+    with pytest.raises(InvalidInputError, match="link is a link that leads nowhere"):
+        write_file(tmp_path / "link" / "x", "")
 
 
 @POSIX

@@ -177,6 +177,7 @@ def test_a_structured_array_names_its_columns(tmp_path):
         (b"x,pdf\n1_000,2\n", "not grouped"),
         (b"x;pdf\n0,5;1,25\n", "decimal mark is a point"),
         ("x,pdf\n1,2\n".encode("utf-16"), "save it as UTF-8"),
+        (b'x\n"1\n2"\n', "without brackets or quotes"),
     ],
 )
 def test_files_that_cannot_be_read_say_why(tmp_path, text, words):

@@ -145,6 +145,8 @@ def _of_the_system(error: OSError) -> str:
         return "too many files are open; raise the system's limit (ulimit -n)"
     if error.errno == errno.ENOENT and error.filename is None and _is_nowhere():
         return "the folder one stands in is gone; go to another one (cd), and give the command again"
+    if error.errno == errno.EBADF and error.filename is None:
+        return "stdin can only be written to, or stdout only be read from; turn the arrows round (< in, > out)"
     return f"{error.strerror or error}{f': {error.filename}' if error.filename else ''}"
 
 

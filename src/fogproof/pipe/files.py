@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Literal
 
@@ -17,6 +18,7 @@ from fogproof.text import beginning
 _MOST = 2**30  # bytes that are read
 _LONGEST_HEADER = 10_000  # of a .npy file
 _NAMES = {"y": "x", "z": "x", "w": "x", "density": "pdf", "mu": "x", "cosine": "x", "t": "x"}
+_QUOTED = re.compile(rb'^"([^"]*)"$')
 _KNOWN = ("x", "pdf", "weight", "event", "valid", "value", "cost", "order", "stderr")
 
 
@@ -109,9 +111,12 @@ def _csv(path: Path) -> tuple[np.ndarray, tuple[str, ...]]:
 
 
 def _cells(line: bytes, separator: bytes | None) -> list[bytes]:
-    """Return the cells of a line, each without the quotes that some programs put around all of them."""
+    """Return the cells of a line, each without the quotes that some programs put around all of them.
+
+    A quote without its pair stays, and is no part of a number: the cell goes on in the next line.
+    """
     cells = line.split(separator)
-    return [cell.strip().strip(b'"') for cell in cells] if b'"' in line else cells
+    return [_QUOTED.sub(rb"\1", cell.strip()) for cell in cells] if b'"' in line else cells
 
 
 def _remarked(line: bytes, separator: bytes | None, count: int) -> tuple[str, ...]:
