@@ -77,9 +77,11 @@ def _asked_with_integers(subject: Subject) -> Subject:
     """
     if not isinstance(subject.domain, Discrete) or subject.domain.n > _MOST_ENTRIES:
         return subject
-    names = ("pdf", "cdf", "eval", "inverse", "reference")
-    given = {name: getattr(subject, name) for name in names}
-    return replace(subject, **{name: partial(_of_integers, f) for name, f in given.items() if f is not None})
+    optional = [None if f is None else partial(_of_integers, f) for f in (subject.cdf, subject.eval, subject.inverse)]
+    cdf, evaluate, inverse = optional
+    reference = None if subject.reference is None else partial(_of_integers, subject.reference)
+    pdf = partial(_of_integers, subject.pdf)
+    return replace(subject, pdf=pdf, cdf=cdf, eval=evaluate, inverse=inverse, reference=reference)
 
 
 def _of_integers(f: Callable[[np.ndarray], Any], x: np.ndarray) -> Any:
