@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from fogproof import Discrete, Draw, Interval, Product, UnitSphere, check_sampler
+from fogproof import Discrete, Draw, Interval, Product, Reference, UnitSphere, check_sampler
 from fogproof.checks.subject import nudged
 from fogproof.domains.law import whole_columns
+from fogproof.errors import SubjectError
 
 W = np.array([0.1, 0.25, 0.05, 0.4, 0.2])
 BOTH = Product(Discrete(5), Interval(0.0, 1.0))
@@ -82,3 +83,41 @@ def test_two_entries_are_two_cells_whichever_is_the_rarer(share):
         lambda u: coin(u, share * 0.5), lambda x: w[x.astype(int)], Discrete(2), dimensions=1, samples=20_000, seed=1
     )
     assert wrong.outcome == "rejected"
+
+
+def test_functions_of_a_table_get_integers():
+    """As the sampler gives them: what indexes a table with its own points may do so here."""
+    seen = []
+
+    def weights(k):
+        seen.append(k.dtype.kind)
+        return W[k]
+
+    def index(u):
+        return entry(u[:, 0]).astype(int)
+
+    more = {
+        "cdf": lambda k: np.cumsum(W)[k],
+        "eval": lambda k: 2 * weights(k),
+        "reference": lambda k: Reference(weights(k)),
+        "albedo": 2.0,
+    }
+    verdict = check_sampler(index, weights, Discrete(5), dimensions=1, samples=20_000, **more)
+    assert verdict.outcome == "not rejected", str(verdict)
+    assert set(seen) == {"i"}
+
+
+@pytest.mark.parametrize(
+    ("pdf", "domain", "fix"),
+    [
+        (lambda x: W[x[:, 0]], BOTH, "index with x.astype(int)"),
+        (lambda k: W[np.minimum(k, 4)], Discrete(np.inf), "index with x.astype(int)"),
+        (lambda k: 2 ** (-1 - np.minimum(k, 3)), Discrete(5), "write a float, as in 2.0**-k"),
+    ],
+    ids=["beside", "without an end", "powers"],
+)
+def test_the_other_type_is_told_with_its_fix(pdf, domain, fix):
+    sample, k = (both, 2) if domain is BOTH else (table, 1)
+    with pytest.raises(SubjectError, match="pdf") as caught:
+        check_sampler(sample, pdf, domain, dimensions=k, samples=20_000)
+    assert fix in str(caught.value)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any, get_args
 
 import numpy as np
@@ -19,6 +20,7 @@ from fogproof.validate import number, unit_vectors
 
 _SPREAD = 1 << 12  # points that show how large a domain is
 _SURE = 6.0  # standard deviations, as if they were drawn by chance: they are more even
+_MOST_ENTRIES = 2**53  # of a table: all are whole numbers in double precision too
 _LEAST_ALPHA = 1e-100  # tails of the tests' laws are accurate some way beyond
 
 
@@ -62,10 +64,28 @@ def declared(
             raise InvalidValueError("axis", "must be given with mean_cosine", axis)
         number("mean_cosine", subject.mean_cosine, "must lie in [-1, 1]", -1, 1)
     return (
-        replace(subject, dimensions=dimensions, axis=axis, breaks=breaks),
+        replace(_asked_with_integers(subject), dimensions=dimensions, axis=axis, breaks=breaks),
         whole("samples", samples, 100),
         fresh_seed() if seed is None else whole("seed", seed, 0, "any whole number >= 0, or None for a fresh one"),
     )
+
+
+def _asked_with_integers(subject: Subject) -> Subject:
+    """Return the subject with functions that get integers where points are entries of a table, which they may index.
+
+    Without an end, numbers may be too large for integers; beside other coordinates, an array has one type for all.
+    """
+    if not isinstance(subject.domain, Discrete) or subject.domain.n > _MOST_ENTRIES:
+        return subject
+    optional = [None if f is None else partial(_of_integers, f) for f in (subject.cdf, subject.eval, subject.inverse)]
+    cdf, evaluate, inverse = optional
+    reference = None if subject.reference is None else partial(_of_integers, subject.reference)
+    pdf = partial(_of_integers, subject.pdf)
+    return replace(subject, pdf=pdf, cdf=cdf, eval=evaluate, inverse=inverse, reference=reference)
+
+
+def _of_integers(f: Callable[[np.ndarray], Any], x: np.ndarray) -> Any:
+    return f(x.astype(np.int64))
 
 
 def _check_atoms_and_events(subject: Subject) -> None:

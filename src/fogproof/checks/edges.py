@@ -11,6 +11,7 @@ import itertools
 
 import numpy as np
 
+from fogproof.checks import unit_lengths
 from fogproof.checks.promises import Watch, at_any_atom, inside
 from fogproof.checks.subject import Subject, in_domain
 from fogproof.checks.verdict import Finding
@@ -38,8 +39,8 @@ def edge_uniforms(subject: Subject, labels: dict[float | None, int]) -> Finding:
             holes = _holes(subject, u, draw) if "positive pdf" in watch.broken else np.empty(0, dtype=int)
     except SubjectError as error:
         return Finding(_NAME, "rejected", f"with {tried}, {error}", cause=_CAUSE)
-    watch.broken.pop("positive pdf", None)
-    watch.broken.pop("infinite pdf", None)
+    for name in ("positive pdf", "infinite pdf", unit_lengths.NAME):
+        watch.broken.pop(name, None)
     for name, (_, example) in watch.broken.items():
         return Finding(
             _NAME, "rejected", f"with {tried}, {name}: {example}{_which(subject, u, draw, name)}", cause=_CAUSE

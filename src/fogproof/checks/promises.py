@@ -9,15 +9,18 @@ from typing import Any
 
 import numpy as np
 
+from fogproof.checks import unit_lengths
 from fogproof.checks.digits import rounded
 from fogproof.checks.subject import Subject, call, in_domain, named
 from fogproof.checks.telling import few_digits, nearly, ratio_of, relation
 from fogproof.checks.verdict import Finding
 from fogproof.contracts import Draw
+from fogproof.domains.law import vector_columns
 from fogproof.errors import shorten
 
 _CAUSES = {
     "domain": "outside the domain",
+    unit_lengths.NAME: "outside the domain",
     "positive pdf": "claimed hole",
     "finite weight": "not a number",
     "finite pdf": "not a number",
@@ -106,6 +109,8 @@ class Watch:
             good = good & draw.valid
         at = np.flatnonzero(good)
         points = x if len(at) == len(x) else x[at]
+        if vector_columns(subject.domain):
+            self._lengths(points)
         p = subject.density(points)
         self._finite(draw)
         if draw.event is not None and subject.events:
@@ -132,6 +137,12 @@ class Watch:
         if draw.event is not None and subject.atoms:
             self._events(draw.event, x)
         return good, p
+
+    def _lengths(self, points: np.ndarray) -> None:
+        off = unit_lengths.off_length(self.subject, points)
+        few = few_digits(self.subject, points[off])
+        tell = lambda i: f"x = {shorten(points[i])}: {unit_lengths.told(self.subject, points[i])}{few}"  # noqa: E731
+        self._note(unit_lengths.NAME, off, tell, len(points))
 
     def _finite(self, draw: Draw) -> None:
         """Weights and densities of valid samples must be numbers, wherever the samples are."""
@@ -223,8 +234,9 @@ class Watch:
         """Return one finding for each promise that was looked at."""
         found = []
         for name, n in self.seen.items():
-            if name in self.broken:
-                count, example = self.broken[name]
+            count, example = self.broken.get(name, (0, ""))
+            seldom = name == unit_lengths.NAME and not unit_lengths.too_many(count, n)
+            if count and not seldom:
                 if name == "infinite pdf":
                     message = f"{count} of {n} samples: {example}; a pole so strong that rounding gathers samples on it{_POLE}"
                     found.append(Finding(name, "inconclusive", message, effect=count / n))
@@ -234,7 +246,8 @@ class Watch:
                 message = f"{count} of {n} samples: {example}"
                 found.append(Finding(name, "rejected", message, effect=count / n, cause=cause))
             else:
-                found.append(Finding(name, "not rejected", f"kept by all {n} samples"))
+                few = f" but {count}, and so few may be off at the pole of a lobe" if count else ""
+                found.append(Finding(name, "not rejected", f"kept by all {n} samples{few}"))
         return found
 
 

@@ -50,7 +50,8 @@ def check_sampler(
     """Test a sampler against the density it claims; every sub-check shares one false-alarm probability `alpha`.
 
     sample       `sample(u)` with u (n, dimensions) in [0, 1) -> points or `Draw`; `sample(rng, n)` if `dimensions` is None
-    pdf          `pdf(x)` -> (n,) density of the continuous part in the domain's measure (a probability on `Discrete`)
+    pdf          `pdf(x)` -> (n,) density of the continuous part in the domain's measure (a probability on `Discrete`,
+                 whose points come as integers; beside others in a `Product`, and without an end, as floats)
     domain       where the points live, see `fogproof.domains`
     atoms        {point: probability}; a point may be inf, and is a tuple where points are several numbers
     cdf          `cdf(x)` -> (n,) P(X <= x), atoms included; on two dimensions the Rosenblatt map or any

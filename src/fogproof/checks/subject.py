@@ -16,6 +16,11 @@ from fogproof.errors import FogproofError, SubjectError, is_stop, shorten
 Precision = Literal["float64", "float32"]
 _BLOCK = 1 << 14  # points of a call, of many
 _COARSE = ("float32", "float16", "bfloat16")
+_FIXES = {
+    "used as indices must be of integer": "; here whole numbers come as floats: index with x.astype(int)",
+    "Integers to negative integer powers": "; points of a table are integers: write a float, as in 2.0**-k",
+}
+"""What to do about what NumPy says of the type of points."""
 UNIT_ROUNDOFF: dict[Precision, float] = {"float64": 2.0**-53, "float32": 2.0**-24}
 
 
@@ -115,7 +120,8 @@ def call(what: str, function: Callable[..., Any], *arguments: Any) -> Any:
     ) as error:  # what ends a program must not end a check
         if is_stop(error):
             raise
-        raise SubjectError(f"{what} raised {type(error).__name__}: {error}", what) from error
+        fix = next((fix for words, fix in _FIXES.items() if words in str(error)), "")
+        raise SubjectError(f"{what} raised {type(error).__name__}: {error}{fix}", what) from error
 
 
 def numbers(what: str, value: Any, shape: tuple[int, ...]) -> np.ndarray:

@@ -16,7 +16,10 @@ _MANY = 1e5  # medians: the probability of a number so large is the density at i
 
 @dataclass(frozen=True)
 class Discrete:
-    """The integers 0 … n - 1, or all from 0 on for n = math.inf; the pdf is a probability."""
+    """The integers 0 … n - 1, or all from 0 on for n = math.inf; the pdf is a probability.
+
+    Functions of its points get integers, with which a table may be indexed; for n = math.inf floats, which hold any of them.
+    """
 
     n: float
 

@@ -56,7 +56,8 @@ class Law:
 class Domain(Protocol):
     """Where samples live, and the measure that their density refers to. Any object with these parts is a domain.
 
-    One whose points hold whole numbers says so by a further part, `whole`: one truth for each number of a point.
+    One whose points hold whole numbers says so by a further part, `whole`: one truth for each number of a point; one whose points
+    hold directions by `vectors`: the first column of each, and that after its last.
     """
 
     @property
@@ -80,6 +81,11 @@ class Domain(Protocol):
 def whole_columns(domain: Domain) -> tuple[bool, ...]:
     """Return which numbers of a point are whole ones: they are exact, and between two of them there is nothing."""
     return tuple(getattr(domain, "whole", (False,) * math.prod(domain.shape)))
+
+
+def vector_columns(domain: Domain) -> tuple[tuple[int, int], ...]:
+    """Return the first column of each direction in a point, and that after its last."""
+    return tuple(getattr(domain, "vectors", ()))
 
 
 def at_the_ends(slack: float) -> float:

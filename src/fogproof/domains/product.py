@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from fogproof.domains.law import Domain, Law, whole_columns
+from fogproof.domains.law import Domain, Law, vector_columns, whole_columns
 from fogproof.errors import InvalidValueError
 
 
@@ -16,6 +17,7 @@ class Product:
     """Points of several domains side by side, (n, columns of all); the pdf is per product of their measures.
 
     `Product(Interval(0, 1), UnitSphere())` has points (t, x, y, z) and a pdf per unit length and steradian.
+    All columns are floats, those of `Discrete` too: a table beside another coordinate is indexed with x[:, 0].astype(int).
     """
 
     parts: tuple[Domain, ...]
@@ -38,6 +40,13 @@ class Product:
     def whole(self) -> tuple[bool, ...]:
         """Which columns hold whole numbers, which no rounding moves."""
         return tuple(one for part in self.parts for one in whole_columns(part))
+
+    @property
+    def vectors(self) -> tuple[tuple[int, int], ...]:
+        """Which columns hold directions."""
+        starts = itertools.accumulate((math.prod(part.shape) for part in self.parts), initial=0)
+        pairs = zip(starts, self.parts, strict=False)
+        return tuple((start + first, start + last) for start, part in pairs for first, last in vector_columns(part))
 
     @property
     def measure(self) -> float:

@@ -13,9 +13,7 @@ from fogproof.errors import InvalidValueError
 from fogproof.validate import number
 
 TURN = 2 * np.pi
-_LENGTH = (
-    256  # slacks: mu of a lobe with g = 0.999 from its textbook formula is off by so much, and a length is no place
-)
+_LENGTH = 256  # slacks, of a single vector: a textbook cosine passes 1 by so much, and a length is no place
 _BESIDE = 8  # directions around one that is not recognised
 
 
@@ -65,6 +63,7 @@ class UnitSphere:
     """All directions; the pdf is per steradian."""
 
     shape = (3,)
+    vectors = ((0, 3),)
     measure = 2 * TURN
 
     def contains(self, x: np.ndarray, slack: float) -> np.ndarray:
@@ -81,6 +80,7 @@ class UnitHemisphere:
     """Directions with z >= 0; the pdf is per steradian."""
 
     shape = (3,)
+    vectors = ((0, 3),)
     measure = TURN
 
     def contains(self, x: np.ndarray, slack: float) -> np.ndarray:
@@ -106,6 +106,7 @@ class SpherePart:
     solid_angle: float = math.nan
 
     shape = (3,)
+    vectors = ((0, 3),)
 
     def __post_init__(self) -> None:
         if not callable(self.inside):

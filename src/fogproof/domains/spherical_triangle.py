@@ -25,6 +25,7 @@ class SphericalTriangle:
     c: Vector
 
     shape = (3,)
+    vectors = ((0, 3),)
 
     def __post_init__(self) -> None:
         for name in ("a", "b", "c"):
