@@ -7,15 +7,12 @@ before a derivative is believed, so that jumps and corners of F are passed over,
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
+from fogproof.checks.density.determinant import Map, determinant
 from fogproof.checks.probes import agreement
 from fogproof.checks.subject import Subject, call, numbers
 from fogproof.checks.verdict import Finding
-
-Map = Callable[[np.ndarray], np.ndarray]
 
 _NAME = "cdf against the pdf"
 _POINTS = 2048
@@ -77,22 +74,9 @@ def _determinants(f: Map, u: np.ndarray) -> np.ndarray:
     found = np.full(len(u), np.nan)
     before = None
     for step in _STEPS:
-        now = _determinant(f, u, step)
+        now = determinant(f, u, step)
         if before is not None:
             agree = np.abs(now - before) <= _AGREE * np.maximum(np.abs(now), np.abs(before))
             found = np.where(np.isnan(found) & agree, now, found)
         before = now
     return found
-
-
-def _determinant(f: Map, u: np.ndarray, step: float) -> np.ndarray:
-    n, k = u.shape
-    matrix = np.empty((n, k, k))
-    for axis in range(k):
-        h = step * np.minimum(u[:, axis], 1 - u[:, axis])
-        low, high = u.copy(), u.copy()
-        low[:, axis] -= h
-        high[:, axis] += h
-        with np.errstate(all="ignore"):
-            matrix[:, :, axis] = (f(high) - f(low)) / (high[:, axis] - low[:, axis])[:, None]
-    return np.abs(np.linalg.det(matrix))

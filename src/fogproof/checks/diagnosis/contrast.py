@@ -56,7 +56,10 @@ class Fit:
 
 @dataclass(frozen=True)
 class Contrast:
-    """Samples x (n, ...), points z (m, ...) of a known law, and the known density at both, x first; `cell` says where each lies."""
+    """Samples x (n, ...), points z (m, ...) of a known law, and the known density at both, x first; `cell` says where each lies.
+
+    whole  whether no points are left out because rounding changes their density
+    """
 
     law: Law
     tree: Tree
@@ -64,6 +67,7 @@ class Contrast:
     z: np.ndarray
     q: np.ndarray
     cell: np.ndarray
+    whole: bool = True
 
     @staticmethod
     def of(subject: Subject, n: int, rng: np.random.Generator, jumps: bool = False) -> Contrast | None:
@@ -84,18 +88,19 @@ class Contrast:
         both = np.concatenate([x, z])
         coordinates = np.concatenate([law.coordinates(x, rng.random((len(x), k))), u])
         leaf = tree.leaf(coordinates)
-        share = anywhere / len(x)
+        share, whole = anywhere / len(x), True
         q = law.density(both) * (share + (1 - share) * tree.density(coordinates, leaf))
         if (
             not (jumps or law.stepped) and moved_by_rounding(subject, pilot[:_ROUNDED]).any()
         ):  # their density says nothing
             telling = in_domain(subject.domain, both, subject.roundoff)
             telling[telling] = ~moved_by_rounding(subject, both[telling])
+            whole = bool(telling.all())
             x, z, q, leaf = x[telling[: len(x)]], z[telling[len(x) :]], q[telling], leaf[telling]
             if min(len(x), len(z)) < _PER_CELL:
                 return None
         cells = min(_CELLS, max(len(x) // _PER_CELL, 1), len(tree.share))
-        return Contrast(law, tree, x, z, q, leaf * cells // len(tree.share))
+        return Contrast(law, tree, x, z, q, leaf * cells // len(tree.share), whole)
 
     @cached_property
     def points(self) -> np.ndarray:

@@ -13,6 +13,7 @@ from fogproof.checks.diagnosis import caps, directions, holes, lines, numbers, p
 from fogproof.checks.diagnosis.contrast import Contrast, Fit, claimed
 from fogproof.checks.diagnosis.fitting import TIE, Explained, judged, likeliest, nearest, sharpened
 from fogproof.checks.diagnosis.hypothesis import Hypothesis, Setting
+from fogproof.checks.diagnosis.integrated import left_on_a_line
 from fogproof.checks.diagnosis.shape import unexplained, unseen
 from fogproof.checks.streams import batch_generator
 from fogproof.checks.subject import Subject
@@ -60,12 +61,14 @@ def explanation(subject: Subject, setting: Setting, base: Fit, samples: int, see
     if not found:
         return None
     best = found[0]
-    gain, share = explained_by(many, best)
+    beyond = left_on_a_line(subject, many.contrast, best.hypothesis.density(many, best.value))
+    gain, share = explained_by(many, best, beyond)
     needed = _FITS if best.hypothesis.cause == "another law" else _EXPLAINS
     if gain < _STANDS_OUT or share < needed or gain < unexplained(many.contrast, many.values) - _CLEARLY:
         return None
     near = [each for each in found[1:] if each.cause != best.cause and each.score > best.score - _CLEARLY]
-    if share < _ALL_BUT and not best.hypothesis.loose and refused(many, best.fit, best.density(many)):
+    differs = beyond > 0 or refused(many, best.fit, best.density(many))
+    if share < _ALL_BUT and differs and not best.hypothesis.loose:
         most = f"{math.floor(1000 * share) / 10:.1f}%"
         told = f"near to, but not: {best.words} (this explains {most} of the misfit, and what is left is no chance)"
         return best.cause if best.cause in _PLACES else "shape", told
@@ -90,8 +93,10 @@ def _different(best: Explained, others: list[Explained]) -> list[str]:
     return [words for words in dict.fromkeys(told.values()) if words != best.words][::-1]
 
 
-def explained_by(setting: Setting, found: Explained) -> tuple[float, float]:
+def explained_by(setting: Setting, found: Explained, beyond: float = 0.0) -> tuple[float, float]:
     """Return the log-likelihood that a hypothesis gains over the claim, and which share that is of what could be gained.
+
+    beyond  what more is known to be left
 
     Where samples lie at density 0, whatever fills that hole gains nearly all: the share is of what is gained beyond filling it.
     """
@@ -99,7 +104,7 @@ def explained_by(setting: Setting, found: Explained) -> tuple[float, float]:
     gain = found.score - contrast.likelihood(setting.values)
     if gain <= 0:
         return gain, 0.0
-    left = unexplained(contrast, found.density(setting))
+    left = max(unexplained(contrast, found.density(setting)), beyond)
     told = gain if left == 0 else found.score - max(contrast.likelihood(s) for s in (setting.values, _filled(setting)))
     return gain, max(told, 0.0) / (max(told, 0.0) + left)
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from fogproof.checks.density.determinant import determinant
 from fogproof.checks.diagnosis.contrast import Contrast, Density
 from fogproof.domains import Domain, Law
 
@@ -72,18 +73,12 @@ class Setting:
         return density
 
     def _volume(self, back: Callable[[np.ndarray], np.ndarray], x: np.ndarray) -> np.ndarray:
-        k = len(self.law.axes)
-        half = np.full((len(x), k), 0.5)
-        u = self.law.coordinates(x, half)
-        matrix = np.empty((len(x), k, k))
-        for axis in range(k):
-            h = _STEP * np.minimum(u[:, axis], 1 - u[:, axis])
-            low, high = u.copy(), u.copy()
-            low[:, axis] -= h
-            high[:, axis] += h
-            ends = [self.law.coordinates(back(self.law.place(v)), half) for v in (low, high)]
-            matrix[:, :, axis] = (ends[1] - ends[0]) / (high[:, axis] - low[:, axis])[:, None]
-        return np.abs(np.linalg.det(matrix))
+        half = np.full((len(x), len(self.law.axes)), 0.5)
+
+        def map_back(u: np.ndarray) -> np.ndarray:
+            return self.law.coordinates(back(self.law.place(u)), half)
+
+        return determinant(map_back, self.law.coordinates(x, half), _STEP)
 
 
 @dataclass(frozen=True)
