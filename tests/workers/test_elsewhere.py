@@ -7,7 +7,7 @@ from fuzz_commands import Run, here
 
 from fogproof.errors import InvalidInputError
 from fogproof.verify import select
-from fogproof.verify.elsewhere import LEAST, Elsewhere, kept_seed
+from fogproof.verify.elsewhere import LEAST, Elsewhere
 
 CASES = """
 import numpy as np
@@ -56,7 +56,7 @@ def test_no_verdict_depends_on_who_draws_or_on_what_is_kept(mine):
     assert tally["drawn"] == 4_200_000
     assert verdicts("--keep", "kept") == plain  # in threads, of the seed that is kept
     end = here(Run(["verify", "mine.py", "--keep", "kept", "--seed", "6"]))
-    assert (end.code, b"keeps samples of seed 5, not 6; leave --seed out" in end.err) == (2, True)
+    assert (end.code, b"kept keeps samples of seed 5, not 6; leave --seed out" in end.err) == (2, True)
 
 
 def test_which_cases_are_worth_it(mine):
@@ -79,7 +79,7 @@ def test_a_folder_of_somebody_elses_is_left_alone(mine, content):
     (mine / "kept").mkdir()
     (mine / "kept" / "seed.json").write_text(content)
     with pytest.raises(InvalidInputError, match="is no seed of a run; choose another folder"):
-        kept_seed(mine / "kept", None)
+        Elsewhere("threads", 1, str(mine / "kept")).seed(None)
     end = here(Run(["verify", "mine.py", "--keep", "kept"]))
     assert (end.code, (mine / "kept" / "seed.json").read_text()) == (2, content)
 

@@ -8,6 +8,7 @@ import shlex
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -19,7 +20,7 @@ from fogproof.cli.terminal import BAD_INPUT, say
 from fogproof.cli.values import FOLDER, PROBABILITY, SECONDS
 from fogproof.text import one_line, p_value
 from fogproof.verify import ALPHA, Result, exit_code, record, reproduce, run, select, shares
-from fogproof.verify.elsewhere import Elsewhere, kept_seed
+from fogproof.verify.elsewhere import Elsewhere
 from fogproof.verify.selection import require_listed
 from fogproof.workers.executors import require_executor
 
@@ -96,11 +97,10 @@ def command(
         from fogproof.reports import REPORT
 
         take(folder, REPORT, force)
-    require_executor(executor)
-    if keep is not None:
-        seed = kept_seed(keep, seed)
-    seed = fresh_seed() if seed is None else seed
     elsewhere = _elsewhere(executor, workers, keep)
+    if elsewhere is not None:
+        seed = elsewhere.seed(seed)
+    seed = fresh_seed() if seed is None else seed
     started, clock = datetime.datetime.now(datetime.UTC), time.perf_counter()
     results: list[Result] = []
     unfinished = 0
@@ -109,16 +109,8 @@ def command(
         say(_row(width, "case", "outcome", "smallest p", "resolution", "samples", "seconds"))
     with interruptible() as stop, _progress(len(chosen)) as advance:
         try:
-            running = run(
-                chosen,
-                seed=seed,
-                alpha=alpha,
-                workers=workers,
-                twins=twins,
-                time_limit=time_limit,
-                elsewhere=elsewhere,
-            )
-            for result in running:
+            options: dict[str, Any] = {"twins": twins, "time_limit": time_limit, "elsewhere": elsewhere}
+            for result in run(chosen, seed=seed, alpha=alpha, workers=workers, **options):
                 results.append(result)
                 if not as_json:
                     advance.print(_describe(width, result))
@@ -153,6 +145,7 @@ def command(
 
 def _elsewhere(executor: str, workers: int, keep: Path | None) -> Elsewhere | None:
     """Return who draws for samplers of many samples, None if each case does it alone."""
+    require_executor(executor)
     if keep is None and executor == "threads":
         return None
     return Elsewhere(executor, workers, None if keep is None else str(keep.resolve()))

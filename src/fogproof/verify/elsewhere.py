@@ -42,6 +42,21 @@ class Elsewhere:
     workers: int
     keep: str | None = None
 
+    def seed(self, seed: int | None) -> int | None:
+        """Return the seed of the run whose samples are kept: the one that is there, or one that is put there."""
+        if self.keep is None:
+            return seed
+        path = Path(self.keep) / _SEED
+        if not os.path.lexists(path):
+            seed = fresh_seed() if seed is None else seed
+            write_file(path, json.dumps({"schema": _SCHEMA, "seed": seed}) + "\n")
+            return seed
+        kept = _read_seed(path)
+        if seed not in (None, kept):
+            fix = f"leave --seed out, say --seed {kept}, or choose another folder"
+            raise InvalidInputError(f"{self.keep} keeps samples of seed {kept}, not {seed}; {fix}", "--seed")
+        return kept
+
     def draws_for(self, case: Case) -> bool:
         """Return whether a case is worth it; what an estimator draws is judged as it comes, in one process."""
         return isinstance(case, SamplerCase) and case.samples >= LEAST
@@ -75,24 +90,13 @@ def _file_of(name: str) -> str:
     return f"{re.sub(r'[^0-9A-Za-z.-]+', '-', name)[:80]}-{digest}.json"
 
 
-def kept_seed(folder: Path, seed: int | None) -> int:
-    """Return the seed of a run whose samples are kept in a folder: the one that is there, or this one, which is put there."""
-    path = folder / _SEED
-    if os.path.lexists(path):
-        try:
-            with open_regular(path, "the seed") as file:
-                kept = json.loads(file.read(1 << 16))
-            its = kept["seed"]
-            if kept["schema"] != _SCHEMA or type(its) is not int or its < 0:
-                raise ValueError
-        except (ValueError, KeyError, TypeError, RecursionError):
-            raise InvalidInputError(
-                f"{path} is no seed of a run; choose another folder to keep samples in", str(path)
-            ) from None
-        if seed not in (None, its):
-            fix = f"leave --seed out, say --seed {its}, or choose another folder"
-            raise InvalidInputError(f"{folder} keeps samples of seed {its}, not {seed}; {fix}", "--seed")
-        return its
-    seed = fresh_seed() if seed is None else seed
-    write_file(path, json.dumps({"schema": _SCHEMA, "seed": seed}) + "\n")
-    return seed
+def _read_seed(path: Path) -> int:
+    try:
+        with open_regular(path, "the seed") as file:
+            kept = json.loads(file.read(1 << 16))
+        seed = kept["seed"]
+        if kept["schema"] == _SCHEMA and type(seed) is int and seed >= 0:
+            return seed
+    except (ValueError, KeyError, TypeError, RecursionError):
+        pass
+    raise InvalidInputError(f"{path} is no seed of a run; choose another folder to keep samples in", str(path))
