@@ -123,7 +123,7 @@ def judge(cell: Cell, levels: Sequence[Level], variance: Reference | None, alpha
         if data.low < known.low or data.high > known.high:
             told = f"realisations reach from {data.low:.6g} to {data.high:.6g}, declared are {known.low:g} to {known.high:g}"
             findings.append(Finding("bounds", "rejected", told, cause="contract"))
-        findings += _against_theory(levels, variance, alpha, known, value, between)
+        findings += _against_theory(levels, variance, alpha, known, value, error, between)
         findings += [between.finding] if between.finding else []
         warning = _heavy(levels, data, value)
         if warning and variance is None and "infinite" in warning:
@@ -232,15 +232,20 @@ def _against_theory(
     alpha: float,
     known: Known,
     value: float,
+    value_error: float,
     between: BetweenReplicates,
 ) -> list[Finding]:
-    """Return what the exact variance says of the spread of realisations."""
+    """Return what the exact variance says of the spread of realisations about the reference, which may be off itself."""
     if variance is None or not np.isfinite(variance.value):
         return []
     squares = pooled(np.stack([level.squares for level in levels]))
-    exact, error = float(variance.value), float(variance.error)
+    exact = float(variance.value)
+    # (X - r)^2 has expectation V + (mean - r)^2, and rounding moves the root of V by what it moves X by (Minkowski).
+    off = resolution_of(value, value_error)
+    error = float(variance.error) + off * (off + 2 * math.sqrt(max(exact, 0.0)))
     what = "mean squared deviation"
-    found = mean_test("variance", what, squares, exact, error, alpha, "wrong variance", known=_of_squares(known, value))
+    of_squares, doubt = _of_squares(known, value), float(variance.error)
+    found = mean_test("variance", what, squares, exact, error, alpha, "wrong variance", of_squares, uncertain=doubt)
     if "too small" in found.region and two_valued(squares) and not found.distribution_free and not known.bounded:
         message = f"{found.message.partition(';')[0]}; rare values that were not seen may hold the rest"
         found = replace(found, outcome="inconclusive", message=message, p_value=None, cause="", region=())
