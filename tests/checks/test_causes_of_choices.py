@@ -74,17 +74,17 @@ def on_a_ray(w, way):
 
 
 def coated(w, way):
-    """Diffuse, or normals of a rough surface."""
+    """Normals of a rough surface, or diffuse."""
 
     def sample(u):
         first, v = way(w, u)
-        mu = np.where(first, np.sqrt(v), np.sqrt(v / (v + ROUGHNESS**2 * (1 - v))))
+        mu = np.where(first, np.sqrt(v / (v + ROUGHNESS**2 * (1 - v))), np.sqrt(v))
         return directions(mu, u[:, -1])
 
     def pdf(w):
         def density(x):
             normals = ROUGHNESS**2 / ((ROUGHNESS**2 - 1) * x[:, 2] ** 2 + 1) ** 2
-            return np.maximum(x[:, 2], 0) / np.pi * (w + (1 - w) * normals)
+            return np.maximum(x[:, 2], 0) / np.pi * (w * normals + 1 - w)
 
         return density
 
@@ -141,7 +141,16 @@ def other_parts(u):
     return np.where(u[:, 0] < 0.3, np.sqrt(u[:, 1]), u[:, 1] ** 2)
 
 
+LOBES, LOBES_PDF, _, _ = two_lobes(0.3, own)
+
+
+def rippled(x):
+    """With the weights exchanged, and that is not all."""
+    return LOBES_PDF(0.7)(x) * (1 + 0.05 * np.cos(40 * x[:, 2]))
+
+
 OTHERS = {
+    "a pdf with another error besides": (LOBES, rippled, UnitSphere(), 3),
     "no choice": (stretch(1.2), lambda t: np.exp(-t), HalfLine(0), 1),
     "a sampler with other parts": (other_parts, lambda x: 0.3 * 3 * x**2 + 0.7, Interval(0, 1), 2),
 }
