@@ -146,7 +146,7 @@ LOBES, LOBES_PDF, _, _ = two_lobes(0.3, own)
 
 def rippled(x):
     """With the weights exchanged, and that is not all."""
-    return LOBES_PDF(0.7)(x) * (1 + 0.05 * np.cos(40 * x[:, 2]))
+    return LOBES_PDF(0.7)(x) * (1 + 0.006 * np.cos(40 * x[:, 2]))
 
 
 OTHERS = {
