@@ -26,11 +26,11 @@ from fogproof.checks.streams import batch_generator
 from fogproof.study.aggregate import levels_of
 from fogproof.study.batches import BatchResult, draw_batch, moments_of
 from fogproof.study.cells import Cell, cells_of, prepare
-from fogproof.study.executors import open_workers
 from fogproof.study.files import Study, study_of
 from fogproof.study.plan import Batch, Batches, batches_of
 from fogproof.study.run import draw_missing
 from fogproof.study.store import FILE, opened
+from fogproof.workers.executors import open_workers
 
 SIZE = 1 << 16
 SCENE = {

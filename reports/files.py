@@ -1,10 +1,9 @@
-"""Files that are there whole or not at all, and never in the place of somebody else's."""
+"""Files that never stand in the place of somebody else's."""
 
 from __future__ import annotations
 
 import contextlib
 import glob
-import hashlib
 import json
 import os
 import re
@@ -15,6 +14,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from fogproof.errors import InvalidInputError
+from fogproof.whole_files import begun, content_bytes, short_name, write_file
 
 FIGURES = ("figures/*.png", "figures/*.svg")
 """Pictures beside a page: which ones, a run may show only when it is over."""
@@ -58,7 +58,7 @@ def prepare_folder(folder: Path, names: tuple[str, ...] = REPORT, force: bool | 
         if path not in ours | lost and (path in marked or not beside):
             fix = "choose another folder" + ("" if force is None else ", or add --force to replace it")
             raise InvalidInputError(f"{path} was not written by fogproof; {fix}", str(path))
-    probe = folder / _begun("probe", os.getpid())
+    probe = folder / begun("probe", os.getpid())
     write_file(probe, b"")
     probe.unlink(missing_ok=True)
     _clear_unfinished(folder, (*names, "probe", ".probe.*"))
@@ -67,15 +67,10 @@ def prepare_folder(folder: Path, names: tuple[str, ...] = REPORT, force: bool | 
 def _clear_unfinished(folder: Path, names: Iterable[str]) -> None:
     """Remove what killed processes left of files of these names (or patterns): what `write_file` had begun."""
     for name in map(Path, names):
-        for path in (folder / name.parent).glob(_begun(name.name, "*")):
+        for path in (folder / name.parent).glob(begun(name.name, "*")):
             with contextlib.suppress(OSError, ValueError):  # somebody removes it at the same time; no process's number
                 if not _runs(int(path.name.split(".")[-2])):
                     path.unlink()
-
-
-def _begun(name: str, process: int | str) -> str:
-    """Return the name under which a process begins a file: hidden, and known as ours wherever it is left."""
-    return f".{name}.{process}.fogproof"
 
 
 def _runs(process: int) -> bool:
@@ -129,20 +124,6 @@ def locked(folder: Path) -> Iterator[None]:
         os.close(opened)
 
 
-def absent(folder: Path) -> list[Path]:
-    """Return which folders of a path are not there yet, the innermost first."""
-    with contextlib.suppress(OSError, ValueError):
-        return [place for place in (folder, *folder.parents) if not os.path.lexists(place)]
-    return []
-
-
-def remove_empty(folders: Iterable[Path]) -> None:
-    """Remove folders that nothing was written into, the innermost first."""
-    for folder in folders:
-        with contextlib.suppress(OSError, ValueError):
-            folder.rmdir()
-
-
 def _is_ours(path: Path) -> bool:
     """Whether a file bears our mark; anything that is no file does not."""
     if not path.is_file():
@@ -192,38 +173,13 @@ def write_output(output: str | Path, content: str | bytes, *sources: str | Path)
     path = Path(output)
     if path.is_file() or not path.exists() or path.is_dir():
         path = Path(os.path.realpath(path))
-        _clear_unfinished(path.parent, [glob.escape(_short(path.name))])
+        _clear_unfinished(path.parent, [glob.escape(short_name(path.name))])
         return write_file(path, content)
     try:  # by its own name: what /dev/stdout leads to may have none
-        path.write_bytes(_bytes(content))
+        path.write_bytes(content_bytes(content))
     except OSError as error:
         raise InvalidInputError(f"cannot write {output}: {error.strerror}", str(output)) from None
     return path
-
-
-def write_file(path: Path, content: str | bytes) -> Path:
-    """Put `content` at `path` whole or not at all, making folders on the way; a fault is an `InvalidInputError`."""
-    beside = path.with_name(_begun(_short(path.name), os.getpid()))
-    missing = absent(path.parent)
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        try:
-            beside.write_bytes(_bytes(content))
-            os.replace(beside, path)
-        finally:
-            beside.unlink(missing_ok=True)
-    except (OSError, ValueError) as error:
-        remove_empty(missing)
-        reason = _no_folder(path.parent) or getattr(error, "strerror", None) or error
-        raise InvalidInputError(
-            f"cannot write {path}: {reason}; choose a folder that can be written", str(path)
-        ) from None
-    return path
-
-
-def _bytes(content: str | bytes) -> bytes:
-    """Return what a file holds; a lone surrogate, which no UTF-8 has, is a question mark."""
-    return content if isinstance(content, bytes) else content.encode("utf-8", "replace")
 
 
 def write_picture(path: Path, content: str | bytes) -> Path:
@@ -234,24 +190,3 @@ def write_picture(path: Path, content: str | bytes) -> Path:
     packed = struct.pack(">I", len(chunk) - 4) + chunk + struct.pack(">I", zlib.crc32(chunk))
     after = 8 + 25  # the signature and the first chunk, IHDR
     return write_file(path, content[:after] + packed + content[after:])
-
-
-_LONGEST = 200
-"""Bytes of a name that has room for more: most systems of files allow 255."""
-
-
-def _short(name: str) -> str:
-    """Return a name, or what stands for one that is long."""
-    raw = os.fsencode(name)
-    return name if len(raw) <= _LONGEST else hashlib.blake2b(raw, digest_size=16).hexdigest()
-
-
-def _no_folder(folder: Path) -> str:
-    """Return in words which part of a folder's path is no folder, "" if none is."""
-    with contextlib.suppress(OSError, ValueError):
-        for place in (folder, *folder.parents):
-            if place.is_symlink() and not place.exists():
-                return f"{place} is a link that leads nowhere"
-            if place.exists():
-                return "" if place.is_dir() else f"{place} is a file, no folder"
-    return ""

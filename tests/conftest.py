@@ -13,6 +13,7 @@ import signal
 
 import numpy as np
 import pytest
+from dask_cluster import cluster  # noqa: F401  # a fixture
 from hypothesis import HealthCheck, settings
 from hypothesis.internal.conjecture import engine
 

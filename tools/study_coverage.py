@@ -29,7 +29,6 @@ from fogproof.contracts import Reference
 from fogproof.study import batches as drawing
 from fogproof.study.batches import draw_batch
 from fogproof.study.cells import Cell, cells_of
-from fogproof.study.executors import open_workers
 from fogproof.study.files import study_of
 from fogproof.study.methods import table
 from fogproof.study.methods.method import Method
@@ -38,6 +37,7 @@ from fogproof.study.reaching import TARGETS
 from fogproof.study.record import Circumstances, make_record
 from fogproof.study.run import draw_missing
 from fogproof.study.store import opened
+from fogproof.workers.executors import open_workers
 
 MEAN = 2.0
 COUNTS = (16, 128, 1024, 8192)

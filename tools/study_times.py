@@ -23,11 +23,11 @@ from fogproof.contracts import Estimator
 from fogproof.study import read_study
 from fogproof.study.batches import BatchResult, draw_batch
 from fogproof.study.cells import Cell, cells_of
-from fogproof.study.executors import open_workers
 from fogproof.study.plan import Batch, batches_of
 from fogproof.study.record import Circumstances, make_record
 from fogproof.study.run import draw_missing
 from fogproof.study.store import opened
+from fogproof.workers.executors import open_workers
 
 WITHIN = {1e-5: 0.1, math.inf: 0.05}
 """How far a stated time may be off, of calls that take less than so many seconds, where its own interval says no more."""

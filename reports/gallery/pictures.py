@@ -11,7 +11,6 @@ import numpy as np
 from fogproof.checks.streams import batch_generator
 from fogproof.errors import InvalidInputError, NotInstalledError, shorten, stop_behind
 from fogproof.reports.charts.pictures import Picture
-from fogproof.reports.files import write_file
 from fogproof.reports.gallery.airlight import FoggyScene, Glow, SamplesAroundALight
 from fogproof.reports.gallery.errors import ErrorAgainstWork
 from fogproof.reports.gallery.media import Fog, Transmittances, closed_media, tracked_media
@@ -22,6 +21,7 @@ from fogproof.reports.gallery.sky import SkyAndSunset
 from fogproof.reports.gallery.tracking import Collisions
 from fogproof.reports.pages.templates import fill
 from fogproof.text import state, unfinished
+from fogproof.whole_files import write_file
 
 
 def drawings(seed: int) -> dict[str, tuple[str, Plot]]:

@@ -10,11 +10,11 @@ from typing import Any
 from fogproof.reports.charts.before_after import BeforeAfter
 from fogproof.reports.charts.pictures import Picture, render
 from fogproof.reports.charts.time_changes import TimeChanges
-from fogproof.reports.files import write_file
 from fogproof.reports.pages.templates import cases as some_cases
 from fogproof.reports.pages.templates import fill
 from fogproof.reports.records.runs import Case, RunRecord
 from fogproof.reports.records.study_record import History
+from fogproof.whole_files import write_file
 
 BECAME = ("biased", "noisier", "slower", "different", "less noisy", "faster")
 """What may have become of an estimator of a study that is judged as before."""

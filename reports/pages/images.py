@@ -9,8 +9,8 @@ from typing import Any
 
 from fogproof.reports.charts.colours import diverging
 from fogproof.reports.charts.pictures import Picture
-from fogproof.reports.files import write_file
 from fogproof.reports.pages.templates import fill
+from fogproof.whole_files import write_file
 
 _HEADLINES = {
     "rejected": "The image is not the oracle's",

@@ -13,10 +13,10 @@ from __future__ import annotations
 from pathlib import Path
 from xml.etree import ElementTree
 
-from fogproof.reports.files import write_file
 from fogproof.reports.pages.summaries import blind
 from fogproof.reports.records.runs import Case, RunRecord
 from fogproof.text import visible
+from fogproof.whole_files import write_file
 
 
 def write_junit(run: RunRecord, folder: str | Path) -> Path:

@@ -13,13 +13,13 @@ from fogproof.reports.charts.findings import parse_figure
 from fogproof.reports.charts.p_values import FEWEST, PValueHistogram, PValues
 from fogproof.reports.charts.pictures import Picture, render
 from fogproof.reports.charts.resolutions import Resolutions
-from fogproof.reports.files import write_file
 from fogproof.reports.pages.summaries import blind, by_cause, catches, needs, plain, systems
 from fogproof.reports.pages.templates import cases as some_cases
 from fogproof.reports.pages.templates import fill
 from fogproof.reports.records.runs import Case, RunRecord, Status
 from fogproof.reports.records.stability import stability_beside
 from fogproof.reports.text import file_stem
+from fogproof.whole_files import write_file
 
 INLINE_BYTES = 5_000_000
 """Figures stand inside the page, the worst cases' first, up to this many bytes; further ones are linked."""

@@ -7,12 +7,12 @@ from typing import Any
 
 from fogproof.reports.charts.error_map import ErrorMap
 from fogproof.reports.charts.pictures import Picture, render
-from fogproof.reports.files import write_file
 from fogproof.reports.pages.templates import fill
 from fogproof.reports.records.runs import write_record
 from fogproof.reports.records.stability import STABILITY, StabilityRecord, parse_stability
 from fogproof.reports.text import file_stem
 from fogproof.stability.record import to_csv
+from fogproof.whole_files import write_file
 
 MOST_PANELS = 4
 """Beside each other in one picture; further forms are in the table alone."""

@@ -9,7 +9,6 @@ from pathlib import Path
 
 from fogproof.reports.charts.convergence import Convergence, ErrorCurve
 from fogproof.reports.charts.pictures import Picture, render
-from fogproof.reports.files import write_file
 from fogproof.reports.pages.page import STATUSES
 from fogproof.reports.pages.summaries import needs
 from fogproof.reports.pages.templates import fill
@@ -18,6 +17,7 @@ from fogproof.reports.records.studies import as_run
 from fogproof.reports.records.study_record import Answer, SceneRecord, StudyEntry, StudyRecord, TargetRecord
 from fogproof.reports.text import file_stem
 from fogproof.text import unfinished
+from fogproof.whole_files import write_file
 
 
 @dataclass(frozen=True)

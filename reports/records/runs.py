@@ -20,11 +20,11 @@ from fogproof.input_files import parse_json, read_text
 from fogproof.oracle_error import OracleError
 from fogproof.plan import Plan
 from fogproof.reports.charts.findings import parse_figure
-from fogproof.reports.files import write_file
 from fogproof.reports.records.figures import require_figures
 from fogproof.reports.validation import adapter
 from fogproof.text import spreadsheet_cell, unfinished
 from fogproof.verify import TwinResult, code_of, status_of
+from fogproof.whole_files import write_file
 
 SCHEMA = "fogproof/results/1"
 RESULTS = "results.json"

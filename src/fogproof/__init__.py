@@ -21,6 +21,7 @@ from fogproof.errors import FogproofError, InvalidValueError, UnsupportedError
 
 if TYPE_CHECKING:
     from fogproof.checks import *  # noqa: F403
+    from fogproof.distributed import check_distributed
     from fogproof.gradient_check import check_gradient
     from fogproof.images.compare import compare_image
     from fogproof.images.pairs import compare_pictures
@@ -70,6 +71,7 @@ __all__ = [
     "SlabLayer",
     "Unbounded",
     "UnsupportedError",
+    "check_distributed",
     "check_gradient",
     "check_relations",
     "compare_image",
@@ -94,6 +96,7 @@ if not TYPE_CHECKING:  # what scenes are made of loads when it is first asked fo
     del __all__
 
 _LAZY = {
+    "check_distributed": "fogproof.distributed",
     "check_gradient": "fogproof.gradient_check",
     "check_relations": "fogproof.relation_check",
     "Run": "fogproof.runs",

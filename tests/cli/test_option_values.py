@@ -7,7 +7,7 @@ from fogproof.checks.limits import isolated
 from fogproof.errors import InvalidValueError
 from fogproof.oracle.limits import Limits, within
 from fogproof.pipe.process import Timeouts
-from fogproof.study.executors import open_workers
+from fogproof.workers.executors import open_workers
 
 RENDERED = ["scene.toml", "--with", "true {scene} {out}", "-o", "none"]
 TAKES = {

@@ -20,7 +20,8 @@ from fogproof.errors import InvalidInputError
 from fogproof.images.formats import format_of
 from fogproof.journal import add_line, whole_lines
 from fogproof.oracle import Limits, serve
-from fogproof.reports.files import write_file, write_output
+from fogproof.reports.files import write_output
+from fogproof.whole_files import write_file
 from fogproof.zoo.running import ZooLog
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -14,7 +14,8 @@ from fuzz_commands import Run, here
 from fogproof.errors import InvalidInputError
 from fogproof.reports.charts.p_values import PValueHistogram
 from fogproof.reports.charts.pictures import render
-from fogproof.reports.files import FIGURES, prepare_folder, write_file
+from fogproof.reports.files import FIGURES, prepare_folder
+from fogproof.whole_files import write_file
 
 ROOT = Path(__file__).resolve().parents[2]
 SUN = (ROOT / "scenes" / "images" / "sun.toml").read_text().replace("width = 48, height = 36", "width = 4, height = 4")

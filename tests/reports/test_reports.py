@@ -16,13 +16,14 @@ from report_records import HOSTILE, case, record, typical
 import fogproof
 from fogproof.errors import FogproofError, InvalidInputError
 from fogproof.reports import read_record, write_report
-from fogproof.reports.files import write_file, write_output
+from fogproof.reports.files import write_output
 from fogproof.reports.pages.junit import write_junit
 from fogproof.reports.pages.templates import keys
 from fogproof.reports.records.runs import parse_record, write_csv, write_record
 from fogproof.reports.text import anchor, file_stem
 from fogproof.text import visible
 from fogproof.verify import status_of
+from fogproof.whole_files import write_file
 
 
 def test_round_trip_keeps_every_value(tmp_path):

@@ -1,72 +1,23 @@
 """A real Dask cluster draws the same bits as one thread, a worker that is killed in mid-study costs nothing, and a lost cluster
 ends in a sentence from which the study can go on."""
 
-import json
 import os
 import signal
-import subprocess
-import sys
-import time
 
 import pytest
 from study_fixtures import SMALL, drawn, study_from, toml
 
 pytest.importorskip("distributed")
 
-from fogproof.study import executors, read_study, run_study
+from fogproof.study import read_study, run_study
 from fogproof.study.cells import cells_of
-from fogproof.study.executors import ClusterError, open_workers
 from fogproof.study.plan import batches_of
 from fogproof.study.run import draw_missing
 from fogproof.study.store import opened
+from fogproof.workers import executors
+from fogproof.workers.executors import ClusterError, open_workers
 
 STUDY = study_from(SMALL)
-PATIENCE = 1800  # seconds, for a machine that has other things to do
-
-
-def started(*arguments):
-    command = [sys.executable, "-m", "dask", *map(str, arguments)]
-    return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-
-
-def waited_for(condition):
-    deadline = time.monotonic() + PATIENCE
-    while not (found := condition()):
-        assert time.monotonic() < deadline, "the cluster did not come up"
-        time.sleep(0.05)
-    return found
-
-
-@pytest.fixture(scope="module")
-def cluster(tmp_path_factory):
-    """Start a scheduler and two workers on loopback; return its address and all three processes."""
-    folder = tmp_path_factory.mktemp("dask")
-    file = folder / "scheduler.json"
-    host = ("--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", file)
-    processes = [started("scheduler", *host)]
-    try:
-
-        def address():
-            try:
-                return json.loads(file.read_text())["address"].removeprefix("tcp://")
-            except (OSError, ValueError):
-                return None
-
-        found = waited_for(address)
-        for name in ("one", "two"):
-            local = ("--local-directory", folder / name, "--name", name)
-            alone = ("--nthreads", "1", "--no-nanny", "--no-dashboard", "--host", "127.0.0.1")
-            processes.append(started("worker", f"tcp://{found}", *alone, *local))
-        from distributed import Client
-
-        with Client(f"tcp://{found}", set_as_default=False) as client:
-            client.wait_for_workers(2, timeout=PATIENCE)
-        yield found, processes
-    finally:
-        for process in processes:
-            process.kill()
-        for process in processes:
-            process.wait()
 
 
 def test_a_cluster_gives_the_same_bits_though_a_worker_is_killed(tmp_path, cluster):

@@ -15,11 +15,11 @@ from study_fixtures import HOW, LIT, SMALL, drawn, estimator, kinds, study_from,
 from fogproof.study import aggregate, read_study, run_study
 from fogproof.study.batches import run_batch
 from fogproof.study.cells import cells_of
-from fogproof.study.executors import open_workers
 from fogproof.study.plan import batches_of
 from fogproof.study.record import make_record
 from fogproof.study.run import ATTEMPTS, draw_missing
 from fogproof.study.store import FILE, opened
+from fogproof.workers.executors import open_workers
 
 STUDY = study_from(SMALL)
 COMMAND = [sys.executable, "-c", "from fogproof.cli import main; main()", "study"]

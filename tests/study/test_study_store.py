@@ -19,10 +19,10 @@ from fogproof.checks.limits import within
 from fogproof.study import StoreError
 from fogproof.study.batches import run_batch
 from fogproof.study.cells import cells_of
-from fogproof.study.executors import open_workers
 from fogproof.study.plan import batches_of
 from fogproof.study.run import draw_missing
 from fogproof.study.store import FILE, opened
+from fogproof.workers.executors import open_workers
 
 STUDY = study_from({**SMALL, "scenes": SMALL["scenes"][:1]})
 

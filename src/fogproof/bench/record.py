@@ -14,9 +14,9 @@ from fogproof.bench.measuring import WayTime, machine, table
 from fogproof.errors import InvalidInputError
 from fogproof.input_files import read_text
 from fogproof.journal import add_line, whole_lines
-from fogproof.reports.files import write_file
 from fogproof.reports.gallery.plots import render_plot
 from fogproof.text import state, unfinished
+from fogproof.whole_files import write_file
 
 SCHEMA = "fogproof/bench/1"
 _PAGE = """\

@@ -8,7 +8,8 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from fogproof.checks import Outcome, Verdict, check_estimator, check_sampler
+from fogproof.checks import Outcome, Verdict, check_estimator, sampler_check
+from fogproof.checks.sampler_parts import SamplerCheck
 from fogproof.contracts import Draw, Estimator, Reference, Sampler
 from fogproof.domains import Domain
 from fogproof.errors import InvalidValueError, SubjectError
@@ -103,8 +104,12 @@ class SamplerCase:
 
     def run(self, alpha: float, seed: int, samples: int | None = None, twin: bool = False) -> Verdict:
         """Check the subject, or its twin, inside the false-alarm probability alpha."""
+        return self.check(alpha, seed, samples, twin).run()
+
+    def check(self, alpha: float, seed: int, samples: int | None = None, twin: bool = False) -> SamplerCheck:
+        """Return the check of the subject, or of its twin, to be drawn in parts."""
         sampler = _subject(self, twin, ("sample", "pdf", "domain", "dimensions"))
-        return check_sampler(
+        return sampler_check(
             sampler.sample,
             sampler.pdf,
             sampler.domain,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import time
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
@@ -30,6 +30,8 @@ from fogproof.doing import doing
 from fogproof.errors import InvalidValueError
 
 _PATIENCE = 60.0  # seconds
+More = Callable[[Tally, int], Tally]
+"""Draws: the tally so far, and how many batches are wanted -> the tally of so many."""
 
 
 @dataclass(frozen=True)
@@ -65,14 +67,16 @@ class SamplerCheck:
 
     @cached_property
     def fingerprint(self) -> str:
-        """What all tallies of this check share: a digest of domain, seed, sizes of batches, and the pilot's points and densities.
+        """What all tallies of this check share: a digest of domain, seed, batches, cells, and the pilot's points and densities.
 
         Six digits of a few numbers: another machine's last bits do not matter, another sampler's values do.
         """
         subject, points = self.prepared.subject, self.prepared.pilot.points[:16]
         with np.errstate(all="ignore"):
             seen = [f"{x:.6g}" for x in (*points.ravel(), *(subject.density(points) if len(points) else ()))]
-        text = repr((subject.domain, subject.dimensions, subject.atoms, self.seed, self.sizes, seen))
+        empty = self.prepared.counter.empty()
+        cells = [len(counts) for counts in empty.fine], None if empty.plane is None else empty.plane.shape
+        text = repr((subject.domain, subject.dimensions, subject.atoms, self.seed, self.sizes, cells, seen))
         return hashlib.blake2b(text.encode(), digest_size=8).hexdigest()
 
     @cached_property
@@ -80,6 +84,11 @@ class SamplerCheck:
         """The sizes of all batches: every look comes at the end of one."""
         ends = [look.samples for look in self.looks]
         return [size for start, end in pairwise([0, *ends]) for size in batch_sizes(end - start)]
+
+    @cached_property
+    def _ends(self) -> np.ndarray:
+        """How many samples there are at the end of each batch."""
+        return np.cumsum(self.sizes)
 
     @property
     def batches(self) -> int:
@@ -93,11 +102,14 @@ class SamplerCheck:
             raise InvalidValueError("batches", f"must be whole numbers from 0 to {self.batches - 1}", batches)
         return replace(self._drawn(batches), check=self.fingerprint)
 
+    def _more(self, tally: Tally, batches: int) -> Tally:
+        return tally.merged(self._drawn(range(len(tally.batches), batches)))
+
     def _drawn(self, batches: Iterable[int]) -> Tally:
         tally = self.prepared.counter.empty()
         with np.errstate(all="ignore"):
             for index in batches:
-                doing(f"sample {sum(self.sizes[:index])} of {self.prepared.samples} at most")
+                doing(f"sample {self._ends[index] - self.sizes[index]} of {self.prepared.samples} at most")
                 draw = self.prepared.subject.draw(batch_generator(self.seed, "samples", 1, index), self.sizes[index])
                 tally = tally.merged(self.prepared.counter.tally(draw, index))
         return tally
@@ -126,16 +138,22 @@ class SamplerCheck:
             findings.append(Finding("all batches", "inconclusive", message))
         return explained(self.prepared.subject, self._verdict(findings, tally))
 
-    def run(self) -> Verdict:
-        """Draw and judge, look by look, until something is rejected or nothing is doubtful, and look for the cause."""
-        return explained(self.prepared.subject, self.unexplained())
+    def run(self, more: More | None = None, begun: Tally | None = None) -> Verdict:
+        """Draw and judge, look by look, until something is rejected or nothing is doubtful, and look for the cause.
 
-    def unexplained(self) -> Verdict:
+        more   the tally so far, how many batches are wanted -> the tally of so many, where others than this thread draw them
+        begun  tally of the first batches, drawn in an earlier sitting
+        """
+        return explained(self.prepared.subject, self.unexplained(more, begun))
+
+    def unexplained(self, more: More | None = None, begun: Tally | None = None) -> Verdict:
         """Return the same with no other word of its cause than the findings'."""
-        tally, findings = self.prepared.counter.empty(), []
+        tally, findings = self.prepared.counter.empty() if begun is None else self._own(begun), []
         for look in self.looks:
-            enough = int(np.searchsorted(np.cumsum(self.sizes), look.samples)) + 1
-            tally = tally.merged(self._drawn(range(len(tally.batches), enough)))
+            enough = int(np.searchsorted(self._ends, look.samples)) + 1
+            if enough < len(tally.batches):
+                continue  # it has been looked at then, and was neither wrong nor right enough
+            tally = (more or self._more)(tally, enough)
             findings = self._judged(tally, look)
             # What the map shows needs no samples, but its cause does: they are drawn until they show it too.
             rejected = any(f.outcome == "rejected" and f.check != map_density.NAME for f in findings)

@@ -15,7 +15,8 @@ def take(folder: Path, names: tuple[str, ...], force: bool) -> None:
 
     A command that ends before it has written anything leaves no folder behind.
     """
-    from fogproof.reports.files import absent, locked, prepare_folder, remove_empty
+    from fogproof.reports.files import locked, prepare_folder
+    from fogproof.whole_files import absent, remove_empty
 
     context = click.get_current_context()
     missing = absent(folder)

@@ -8,6 +8,7 @@ import shlex
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -19,7 +20,9 @@ from fogproof.cli.terminal import BAD_INPUT, say
 from fogproof.cli.values import FOLDER, PROBABILITY, SECONDS
 from fogproof.text import one_line, p_value
 from fogproof.verify import ALPHA, Result, exit_code, record, reproduce, run, select, shares
+from fogproof.verify.elsewhere import Elsewhere
 from fogproof.verify.selection import require_listed
+from fogproof.workers.executors import require_executor
 
 
 @click.command("verify")
@@ -41,8 +44,21 @@ from fogproof.verify.selection import require_listed
     help="False-alarm probability of the whole catalogue.",
 )
 @click.option(
-    "--workers", type=click.IntRange(min=1), default=2, show_default=True, help="Threads; results do not depend on it."
+    "--workers",
+    type=click.IntRange(min=1),
+    default=2,
+    show_default=True,
+    help="Threads, and processes of --executor processes; results do not depend on it.",
 )
+@click.option(
+    "--executor",
+    default="threads",
+    show_default=True,
+    metavar="WHERE",
+    help="Who draws for samplers of more than four million samples: threads, processes, or dask://host:port of a Dask scheduler; "
+    "results do not depend on it.",
+)
+@click.option("--keep", type=FOLDER, help="Keep the samples of those here: the same command goes on where it was.")
 @click.option("--twins", is_flag=True, help="Run every broken twin as well: the same checks must reject it.")
 @click.option(
     "--time-limit",
@@ -58,6 +74,8 @@ def command(
     seed: int | None,
     alpha: float,
     workers: int,
+    executor: str,
+    keep: Path | None,
     twins: bool,
     time_limit: float | None,
     force: bool,
@@ -79,6 +97,9 @@ def command(
         from fogproof.reports import REPORT
 
         take(folder, REPORT, force)
+    elsewhere = _elsewhere(executor, workers, keep)
+    if elsewhere is not None:
+        seed = elsewhere.seed(seed)
     seed = fresh_seed() if seed is None else seed
     started, clock = datetime.datetime.now(datetime.UTC), time.perf_counter()
     results: list[Result] = []
@@ -88,7 +109,8 @@ def command(
         say(_row(width, "case", "outcome", "smallest p", "resolution", "samples", "seconds"))
     with interruptible() as stop, _progress(len(chosen)) as advance:
         try:
-            for result in run(chosen, seed=seed, alpha=alpha, workers=workers, twins=twins, time_limit=time_limit):
+            options: dict[str, Any] = {"twins": twins, "time_limit": time_limit, "elsewhere": elsewhere}
+            for result in run(chosen, seed=seed, alpha=alpha, workers=workers, **options):
                 results.append(result)
                 if not as_json:
                     advance.print(_describe(width, result))
@@ -119,6 +141,14 @@ def command(
 
             say(f"report: {write_report(run_record, folder)}", err=True)
     return stop.code or unfinished or exit_code(results)
+
+
+def _elsewhere(executor: str, workers: int, keep: Path | None) -> Elsewhere | None:
+    """Return who draws for samplers of many samples, None if each case does it alone."""
+    require_executor(executor)
+    if keep is None and executor == "threads":
+        return None
+    return Elsewhere(executor, workers, None if keep is None else str(keep.resolve()))
 
 
 def _row(width: int, *cells: str) -> str:

@@ -109,7 +109,7 @@ def command(
     order = {bug.name: i for i, bug in enumerate(chosen)}
     rows.sort(key=lambda row: order[row.name])
     if folder is not None:
-        from fogproof.reports.files import write_file
+        from fogproof.whole_files import write_file
         from fogproof.zoo.comparison import page
 
         sizes = {name: len(bugs_of(name)) for name in {bug.folder for bug in chosen}}

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from fogproof.images.formats import LARGEST
-from fogproof.reports.files import write_file
+from fogproof.whole_files import write_file
 
 RECORD = "row.json"
 IMAGES = ("image.exr", "image.exr.npy")

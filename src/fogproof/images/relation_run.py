@@ -21,12 +21,13 @@ from fogproof.images.picture import read_picture
 from fogproof.relations import Comparison, ImageSetting
 from fogproof.renderers.running import RenderFailure, code_of, render_one
 from fogproof.renderers.table import Renderer
-from fogproof.reports.files import prepare_folder, write_file
+from fogproof.reports.files import prepare_folder
 from fogproof.reports.pages.images import write_relations_page
 from fogproof.scene import ImageScene
 from fogproof.scene.files import read_image_scene
 from fogproof.scene.to_json import to_json
 from fogproof.text import state, unfinished
+from fogproof.whole_files import write_file
 
 
 @dataclass(frozen=True)

@@ -19,11 +19,12 @@ from fogproof.images.report import write_comparison
 from fogproof.images.scene_names import scene_names
 from fogproof.renderers.running import RenderFailure, code_of, render_one
 from fogproof.renderers.table import Renderer
-from fogproof.reports.files import locked, write_file
+from fogproof.reports.files import locked
 from fogproof.reports.pages.images import write_renders_page
 from fogproof.scene.files import read_image_scene
 from fogproof.scene.to_json import to_json
 from fogproof.text import state, unfinished
+from fogproof.whole_files import write_file
 
 WRITTEN = (*COMPARISON, RECORD, "scene.json", *IMAGES)
 """The files of one scene, in its own folder."""

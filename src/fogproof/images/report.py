@@ -14,8 +14,9 @@ from fogproof.images.judging import ImageComparison
 from fogproof.images.maps import REACH, maps, picture_png, z_png
 from fogproof.reports.charts.p_values import FEWEST, PValueHistogram
 from fogproof.reports.charts.pictures import render
-from fogproof.reports.files import write_file, write_picture
+from fogproof.reports.files import write_picture
 from fogproof.reports.pages.images import write_image_page
+from fogproof.whole_files import write_file
 
 WRITTEN = (
     "index.html",

@@ -13,7 +13,6 @@ from fogproof.errors import InvalidInputError
 from fogproof.study.cells import cells_of, prepare
 from fogproof.study.csv_table import table
 from fogproof.study.environment import environment
-from fogproof.study.executors import open_workers
 from fogproof.study.files import Study
 from fogproof.study.history import compare
 from fogproof.study.plan import batches_of
@@ -22,6 +21,9 @@ from fogproof.study.record import Circumstances, make_record, read_results
 from fogproof.study.run import draw_missing
 from fogproof.study.store import opened
 from fogproof.study.trial import try_own
+from fogproof.workers.executors import open_workers
+
+_PRELOAD = ("fogproof.study.batches",)
 
 
 def run_study(
@@ -63,7 +65,10 @@ def run_study(
         slots = 0
         stopped: KeyboardInterrupt | None = None
         if missing:
-            with open_workers(executor, workers) as pool, Progress(cells, batches, done, pool.slots) as progress:
+            with (
+                open_workers(executor, workers, _PRELOAD) as pool,
+                Progress(cells, batches, done, pool.slots) as progress,
+            ):
                 store.begin(started, json.dumps(environment(), sort_keys=True))
                 slots = pool.slots
                 try:
@@ -73,7 +78,7 @@ def run_study(
         run = Circumstances(command, started, time.perf_counter() - clock, executor, slots, stopped is not None)
         record = make_record(study, cells, batches, store, run)
         store.require_there()
-    from fogproof.reports.files import write_file
+    from fogproof.whole_files import write_file
 
     if before is not None:
         record["history"] = compare(before, record)

@@ -10,11 +10,11 @@ from dataclasses import dataclass, field
 
 from fogproof.study.batches import BatchResult, run_batch
 from fogproof.study.cells import Cell
-from fogproof.study.executors import ClusterError, Workers
 from fogproof.study.files import Study
 from fogproof.study.plan import Batch
-from fogproof.study.processes import FailedBatchError, LostProcessError, NoProcessError
 from fogproof.study.stored_batches import Store
+from fogproof.workers.executors import ClusterError, Workers
+from fogproof.workers.processes import FailedCallError, LostProcessError, NoProcessError
 
 ATTEMPTS = 3
 """A batch that has failed so often is given up for this run, and reported; so is a cell that did in so many batches."""
@@ -120,7 +120,7 @@ def _collect(ready: set[Future[BatchResult]], work: _Work, store: Store, pool: W
             work.ended.add(batch.number)
             work.deadly[batch.cell] += _again(batch, f"{_DIED}: {error}", work, store, advance)
         else:
-            words = str(error) if isinstance(error, FailedBatchError) else f"{type(error).__name__}: {error}"
+            words = str(error) if isinstance(error, FailedCallError) else f"{type(error).__name__}: {error}"
             _again(batch, words, work, store, advance)
 
 

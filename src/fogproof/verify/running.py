@@ -17,6 +17,7 @@ from fogproof.catalogue import Case
 from fogproof.checks.limits import UnstartedError, end_isolated, isolated
 from fogproof.checks.streams import batch_generator
 from fogproof.errors import FogproofError, NotInstalledError, is_stop
+from fogproof.verify.elsewhere import Elsewhere, case_of
 from fogproof.verify.results import Result, TwinResult, status_of
 from fogproof.verify.selection import shares, whole
 
@@ -36,6 +37,7 @@ def run(
     workers: int,
     twins: bool = False,
     time_limit: float | None = None,
+    elsewhere: Elsewhere | None = None,
 ) -> Iterator[Result]:
     """Run cases on threads, yielding each result as it is ready; with `twins`, the broken twin of each as well.
 
@@ -46,17 +48,22 @@ def run(
     Where no process can be started for a case, the others are run all the same; then comes the `UnstartedError`.
 
     time_limit  most seconds a case may take, None for any
+    elsewhere   who draws for samplers of many samples, one case after another
     """
     parts = shares(cases, alpha)
     totals = {origin: sum(case.weight for case in whole(origin)) for origin in parts}
-    pool = ThreadPoolExecutor(max_workers=workers)
+    pool, one = ThreadPoolExecutor(max_workers=workers), ThreadPoolExecutor(max_workers=1)
     jobs: list[Future[Result]] = []
     try:
         for case in cases:
             share = parts[case.origin] * case.weight / totals[case.origin]
-            alone = case.origin or time_limit is not None
-            job = partial(run_case_alone, time_limit=time_limit) if alone else run_case
-            jobs.append(pool.submit(job, case, seed, share, twins))
+            drawn = elsewhere if elsewhere is not None and elsewhere.draws_for(case) else None
+            if case.origin or time_limit is not None or drawn is not None:
+                jobs.append(
+                    (one if drawn else pool).submit(run_case_alone, case, seed, share, twins, time_limit, drawn)
+                )
+            else:
+                jobs.append(pool.submit(run_case, case, seed, share, twins))
         unstarted: UnstartedError | None = None
         for done in as_completed(jobs):
             try:
@@ -68,36 +75,46 @@ def run(
         if unstarted is not None:
             raise unstarted
     finally:
-        pool.shutdown(wait=False, cancel_futures=True)
+        for each in (pool, one):
+            each.shutdown(wait=False, cancel_futures=True)
         while not all(job.done() for job in jobs):  # one that was about to start a process may start it only now
             end_isolated()
             time.sleep(_LOOK)
-        pool.shutdown(wait=True)
+        for each in (pool, one):
+            each.shutdown(wait=True)
 
 
-def run_case_alone(case: Case, seed: int, alpha: float, twins: bool = False, time_limit: float | None = None) -> Result:
+def run_case_alone(
+    case: Case,
+    seed: int,
+    alpha: float,
+    twins: bool = False,
+    time_limit: float | None = None,
+    elsewhere: Elsewhere | None = None,
+) -> Result:
     """Run one case in a process of its own, so that nothing it does to the process costs another case's result."""
     started = time.perf_counter()
     here = os.getcwd() if case.origin else ""
     try:
-        result: Result = isolated(partial(_in_process, here, case.origin, case.name, seed, alpha, twins), time_limit)
+        asked = partial(_in_process, here, case.origin, case.name, seed, alpha, twins, elsewhere)
+        result: Result = isolated(asked, time_limit)
     except FogproofError as error:
         return Result(case, "error", None, str(error), time.perf_counter() - started)
     return replace(result, case=case)
 
 
-def _in_process(folder: str, origin: str, name: str, seed: int, alpha: float, twins: bool) -> Any:
+def _in_process(
+    folder: str, origin: str, name: str, seed: int, alpha: float, twins: bool, elsewhere: Elsewhere | None
+) -> Any:
     """Run the case of a name; the result goes back without the case, which no pickle can hold."""
-    if folder:
-        os.chdir(folder)  # the server of processes began somewhere else, maybe
     with contextlib.redirect_stdout(sys.stderr):
-        (case,) = (case for case in whole(origin) if case.name == name)
-        return replace(run_case(case, seed, alpha, twins), case=None)  # type: ignore[arg-type]
+        case = case_of(folder, origin, name)
+        return replace(run_case(case, seed, alpha, twins, elsewhere), case=None)  # type: ignore[arg-type]
 
 
-def run_case(case: Case, seed: int, alpha: float, twins: bool = False) -> Result:
+def run_case(case: Case, seed: int, alpha: float, twins: bool = False, elsewhere: Elsewhere | None = None) -> Result:
     """Run one case; whatever goes wrong in it is its result, never the end of the run."""
-    result = _run_subject(case, seed, alpha)
+    result = _run_subject(case, seed, alpha, elsewhere)
     again = twins and case.twin is not None and result.status != "skipped"
     return replace(result, twin=run_twin(case, seed, alpha)) if again else result
 
@@ -125,12 +142,13 @@ def run_twin(case: Case, seed: int, alpha: float) -> TwinResult:
     )
 
 
-def _run_subject(case: Case, seed: int, alpha: float) -> Result:
+def _run_subject(case: Case, seed: int, alpha: float, elsewhere: Elsewhere | None) -> Result:
     started = time.perf_counter()
     try:
         if case.needs and importlib.util.find_spec(case.needs) is None:
             raise NotInstalledError(*_PACKAGES[case.needs])
-        verdict = case.run(alpha, case_seed(seed, case.name))
+        own = case_seed(seed, case.name)
+        verdict = case.run(alpha, own) if elsewhere is None else elsewhere.verdict(case, alpha, own)
     except NotInstalledError as error:
         return Result(case, "skipped", None, str(error), time.perf_counter() - started)
     except FogproofError as error:

@@ -1,4 +1,4 @@
-"""Processes that draw batches, one each at a time: whose end it was that a process came to is known, and costs nobody else."""
+"""Processes that do one part of long work each at a time: whose end it was that one came to is known, and costs nobody else."""
 
 from __future__ import annotations
 
@@ -8,14 +8,12 @@ import os
 import pickle
 import queue
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
 from fogproof.checks.limits import IsolatedProcess, fresh_process
 from fogproof.errors import SubjectError
-
-_PRELOAD = ("fogproof.study.batches",)
 
 
 class NoProcessError(SubjectError):
@@ -25,18 +23,20 @@ class NoProcessError(SubjectError):
 
 
 class LostProcessError(SubjectError):
-    """The process that drew a batch has ended, or what it says is no answer."""
+    """The process that was at work has ended, or what it says is no answer."""
 
 
-class FailedBatchError(Exception):
-    """What a batch raised in its process, in words."""
+class FailedCallError(Exception):
+    """What a call raised in its process, in words."""
 
 
 class Processes(ThreadPoolExecutor):
     """As many threads, and a process for each that is at work."""
 
-    def __init__(self, n: int) -> None:
+    def __init__(self, n: int, preload: Sequence[str] = ()) -> None:
+        """Prepare for n processes. `preload`: modules that take long to load."""
         super().__init__(n)
+        self._preload = preload
         self._idle: queue.SimpleQueue[_Process | None] = queue.SimpleQueue()
         self._all: set[_Process] = set()
         self._over = False
@@ -61,12 +61,12 @@ class Processes(ThreadPoolExecutor):
         finally:
             self._idle.put(process)
         if not good:
-            raise FailedBatchError(answer)
+            raise FailedCallError(answer)
         return answer
 
     def _started(self) -> _Process:
         try:
-            process = _Process()
+            process = _Process(self._preload)
         except OSError as error:
             fix = "what was drawn is kept: give the same command again"
             raise NoProcessError(f"{error.strerror or error}; {fix}", "--executor") from None
@@ -76,7 +76,7 @@ class Processes(ThreadPoolExecutor):
         return process
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """End all processes; a batch that is still being drawn is lost."""
+        """End all processes; what they are at is lost."""
         super().shutdown(wait=False, cancel_futures=cancel_futures)
         self._over = True
         for process in list(self._all):
@@ -87,12 +87,12 @@ class Processes(ThreadPoolExecutor):
 
 
 class _Process:
-    """A process and the pipe by which it is told what to draw."""
+    """A process and the pipe by which it is told what to do."""
 
-    def __init__(self) -> None:
+    def __init__(self, preload: Sequence[str]) -> None:
         asks, self._asks = multiprocessing.Pipe(duplex=False)
         try:
-            self._process: IsolatedProcess = fresh_process(_PRELOAD, _serve, asks)
+            self._process: IsolatedProcess = fresh_process(preload, _serve, asks)
         except OSError:
             self._asks.close()
             raise

@@ -1,20 +1,20 @@
-"""Where batches are drawn: threads, processes, or a Dask cluster, all behind `concurrent.futures`.
+"""Where parts of long work are done: threads, processes, or a Dask cluster, all behind `concurrent.futures`.
 
-A process that ends takes its batch with it, which is drawn again: by a new one, or by Dask elsewhere. What an estimator has left in
-a process, a thread that writes where it should not, say, may end it under another's batch: `Workers.restart` makes new ones.
+A process that ends takes its part with it, which is done again: by a new one, or by Dask elsewhere. What a subject has left in
+a process, a thread that writes where it should not, say, may end it under another's part: `Workers.restart` makes new ones.
 """
 
 from __future__ import annotations
 
 import contextlib
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from typing import Any
 
 from fogproof.errors import InvalidValueError, NotInstalledError, SubjectError
-from fogproof.study.processes import Processes
+from fogproof.workers.processes import Processes
 
 PATIENCE = 10.0
 """Seconds a scheduler has to answer."""
@@ -30,7 +30,7 @@ class ClusterError(SubjectError):
 class Workers:
     """An executor and how to get another one.
 
-    slots  batches that can be drawn at the same time
+    slots  parts that can be done at the same time
     """
 
     make: Callable[[], Executor]
@@ -46,25 +46,30 @@ class Workers:
         self.executor = self.make()
 
 
+def require_executor(where: str) -> None:
+    """Refuse what names no executor; whether a cluster answers is not asked."""
+    if where not in ("threads", "processes") and not where.startswith("dask://"):
+        raise InvalidValueError("--executor", "must be threads, processes or dask://host:port", where)
+
+
 def available() -> int:
     """Return how many processors this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 @contextlib.contextmanager
-def open_workers(where: str, workers: int | None) -> Iterator[Workers]:
-    """Open workers: "threads", "processes", or "dask://host:port" for a cluster, whose workers are its own."""
+def open_workers(where: str, workers: int | None, preload: Sequence[str] = ()) -> Iterator[Workers]:
+    """Open workers: "threads", "processes", or "dask://host:port" for a cluster, whose workers are its own.
+
+    preload  modules that take long to load, for processes
+    """
+    require_executor(where)
     if where.startswith("dask://"):
         with _dask(where.removeprefix("dask://")) as made:
             yield made
         return
     n = workers or available()
-    if where == "threads":
-        made = Workers(lambda: ThreadPoolExecutor(n), n)
-    elif where == "processes":
-        made = Workers(lambda: Processes(n), n)
-    else:
-        raise InvalidValueError("--executor", "must be threads, processes or dask://host:port", where)
+    made = Workers(lambda: Processes(n, preload) if where == "processes" else ThreadPoolExecutor(n), n)
     try:
         yield made
     finally:

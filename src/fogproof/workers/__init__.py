@@ -1,0 +1,1 @@
+"""Where parts of long work are done: threads, processes, or a cluster."""
