@@ -37,7 +37,7 @@ _ALMOST_ALL = 0.95  # of the points, at which it is
 
 
 @dataclass(frozen=True)
-class Part:
+class Branch:
     """One side of a choice: the map (m, k) -> (m, k) from uniforms of its own to coordinates of the domain's known law."""
 
     law: Law
@@ -133,14 +133,14 @@ def _weights(
     if len(columns) != len(law.axes):
         return None
 
-    def part(low: float, high: float) -> Part:
+    def part(low: float, high: float) -> Branch:
         def map_of(v: np.ndarray) -> np.ndarray:
             u = np.tile(base, (len(v), 1))
             u[:, columns] = v
             u[:, column] = low + (high - low) * (u[:, column] if again else 0.5)
             return placed(subject, law, u)[1]
 
-        return Part(law, map_of, subject.precision)
+        return Branch(law, map_of, subject.precision)
 
     both = part(0.0, w), part(w, 1.0)
     densities = []
