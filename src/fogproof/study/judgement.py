@@ -24,12 +24,14 @@ from fogproof.study.cells import Cell
 from fogproof.study.question import UNITS
 from fogproof.study.replicate_means import as_calls_allow, judged_by_replicates
 
-Lack = Literal["", "samples", "law", "resolution", "calls", "range"]
+Lack = Literal["", "samples", "law", "tail", "resolution", "calls", "range"]
 EPS = float(np.finfo(float).eps)
 ROUNDING = 1e-12
 """Relative difference to the reference that sums in another order may make."""
 BY_BIAS = frozenset({"mean", "value", "random points"})
 """The checks that a bias fails."""
+_THIRD = 3.0
+"""The tail index below which there is no third moment: skewness then grows with the samples instead of wearing off."""
 _SUSPICIOUS = 0.05
 """Share of one realisation in the sum of squares that is worth a warning, where it is twice that of a normal law's largest."""
 
@@ -42,7 +44,8 @@ class Judged:
     warning  about heavy tails, "" if there is none
     times_as_many  how many times as many realisations would decide about the mean, as far as can be foreseen; 1 if nothing is open
     calls    how the realisations of a call go together
-    lacks    what an open judgement lacks: "samples", too few of whatever law; "law": samples for so skewed values; "resolution": an
+    lacks    what an open judgement lacks: "samples", too few of whatever law; "law": samples for so skewed values; "tail": a third
+             moment, as far as the largest values tell, so that no number of samples may be enough; "resolution": an
              error as large as the reference would not have been seen; "calls": calls, to tell whether their realisations are
              independent; "range": numbers that binary64 has powers of; "" else
     design_effect  how many times as much the mean varies as that of independent realisations, as far as calls are taken as such
@@ -70,6 +73,11 @@ class Judged:
     def infinite(self) -> bool:
         """Whether the variance may be infinite: then no error that was measured says anything of the next."""
         return "infinite" in self.warning
+
+    @property
+    def rare(self) -> bool:
+        """Whether values too rare to be met may hold more of mean and variance: then no time to an error has an upper end."""
+        return self.infinite or self.lacks in ("samples", "law", "tail")
 
 
 def tests_of(cell: Cell) -> int:
@@ -134,6 +142,9 @@ def judge(cell: Cell, levels: Sequence[Level], variance: Reference | None, alpha
             lacks, times_as_many = "calls", 4.0
         elif mean.outcome == "inconclusive":
             lacks, times_as_many = "samples" if data.n < LEAST else "law", _wanted(data, alpha)
+            index, unsure = tail_of(levels, data, value).outermost()
+            if lacks == "law" and index + unsure < _THIRD:
+                lacks, times_as_many = "tail", 1.0
     if not all(level.complete for level in levels) or len(levels) < len(cell.counts):
         findings.append(Finding("completeness", "inconclusive", "batches are missing"))
     outcomes = [f.outcome for f in findings if f.outcome == "rejected" or f.check != "variance"]
@@ -188,7 +199,8 @@ def inherited(judged: Judged, twin: Judged) -> Judged:
     if twin.wrong and not twin.wrong & BY_BIAS:  # for something else than a bias, which has its own name
         first = next(f for f in twin.findings if f.outcome == "rejected")
         finding = Finding(first.check, "rejected", f"with random points: {first.message}", cause=first.cause)
-    return replace(judged, outcome=twin.outcome, findings=(*judged.findings, finding), times_as_many=twin.times_as_many)
+    findings = (*judged.findings, finding)
+    return replace(judged, outcome=twin.outcome, findings=findings, times_as_many=twin.times_as_many, lacks=twin.lacks)
 
 
 def doubted(judged: Judged, twin: Judged) -> Judged:
@@ -269,10 +281,15 @@ def excess(data: Moments) -> float:
     return data.n * (data.m4 / data.m2) / data.m2 - 3 if data.m2 > 0 else 0.0
 
 
-def _heavy(levels: Sequence[Level], data: Moments, value: float) -> str:
+def tail_of(levels: Sequence[Level], data: Moments, value: float) -> TailEstimate:
+    """Return the tail of the deviations from the value."""
     largest = _complete(levels)
     # Hill's estimate takes a thousandth of the sample; where fewer deviations are known, it looks further out.
-    tail = TailEstimate(value, largest, min(data.n, 1000 * (len(largest) - 1)))
+    return TailEstimate(value, largest, min(data.n, 1000 * (len(largest) - 1)))
+
+
+def _heavy(levels: Sequence[Level], data: Moments, value: float) -> str:
+    tail = tail_of(levels, data, value)
     index, spread = tail.index()
     if tail.suspect():
         return f"infinite variance suspected: the tail has index {index:.2g} +- {spread:.1g}, where 2 is the least"
