@@ -147,7 +147,7 @@ def _seen(subject: Subject, law: Law, seed: int) -> MapDensity | None:
     count = min(_POINTS, _MOST // (subject.dimensions or 1))
     rng = batch_generator(seed, "map", 0, 0)
     u = rng.random((count, subject.dimensions or 0))
-    x, at, good = _placed(subject, law, u)
+    x, at, good = placed(subject, law, u)
     columns = range(u.shape[1])
     axes = [column for column in columns if _matters(subject, law, u, column, at)]
     if len(axes) != len(law.axes):
@@ -155,7 +155,7 @@ def _seen(subject: Subject, law: Law, seed: int) -> MapDensity | None:
     rare = 0.0
     if len(axes) < u.shape[1]:
         many = rng.random((_IDLE, u.shape[1]))
-        there, rare = _placed(subject, law, many)[1], _RARE / _IDLE
+        there, rare = placed(subject, law, many)[1], _RARE / _IDLE
         if any(_matters(subject, law, many, column, there) for column in columns if column not in axes):
             return None
     volume, fine, doubt = np.full((3, count), np.nan)
@@ -170,7 +170,7 @@ def _seen(subject: Subject, law: Law, seed: int) -> MapDensity | None:
 def _matters(subject: Subject, law: Law, u: np.ndarray, column: int, at: np.ndarray) -> bool:
     moved = u.copy()
     moved[:, column] = np.roll(moved[:, column], 1)
-    return not np.array_equal(_placed(subject, law, moved)[1], at, equal_nan=True)
+    return not np.array_equal(placed(subject, law, moved)[1], at, equal_nan=True)
 
 
 def _derivatives(subject: Subject, law: Law, u: np.ndarray, axes: list[int]) -> tuple[np.ndarray, np.ndarray]:
@@ -198,13 +198,13 @@ def _derivative(subject: Subject, law: Law, u: np.ndarray, axes: list[int], step
     moved = np.tile(u, (len(axes), len(_STENCIL), 1, 1))
     for i, axis in enumerate(axes):
         moved[i, :, :, axis] += _STENCIL[:, None] * lengths[:, i]
-    at = _placed(subject, law, moved.reshape(-1, u.shape[1]))[1].reshape(*moved.shape[:3], len(axes))
+    at = placed(subject, law, moved.reshape(-1, u.shape[1]))[1].reshape(*moved.shape[:3], len(axes))
     with np.errstate(all="ignore"):
         matrix = np.einsum("p,ipnk->nki", _WEIGHTS, at) / lengths[:, None, :]
         return np.abs(np.linalg.det(matrix))
 
 
-def _placed(subject: Subject, law: Law, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def placed(subject: Subject, law: Law, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the points of uniforms, their coordinates (n, k), NaN where there is no density, and where there is one."""
     draw = subject.draw_at(u)
     good = inside(subject, draw) & ~at_any_atom(subject, draw.x)

@@ -34,7 +34,7 @@ from fogproof.checks.streams import batch_generator
 from fogproof.checks.subject import Subject
 from fogproof.checks.table import table_grid
 from fogproof.checks.verdict import Finding
-from fogproof.domains import Discrete
+from fogproof.domains import Discrete, Law
 from fogproof.errors import InvalidValueError
 
 _MOST_ENTRIES = 1 << 22  # of a table that is summed over
@@ -78,14 +78,18 @@ def _prepared(subject: Subject, samples: int, seed: int, pilot: Pilot, chart: Ch
     rounded = _rounded(subject, pilot.points, seed)
     claim = None if chart is None else claimed(subject, chart, pilot.points, samples, rounded)
     if claim is None or claim.doubt:
-        return _by_labels(subject, samples, seed, pilot, claim, findings, rounded)
+        mixture = _mixture(subject, samples, seed, pilot)
+        findings += _sampled_integrals(subject, mixture, pilot)
+        grid, count, counted = _cells_beside(subject, samples, claim, mixture.law, pilot, rounded)
+        counter = _counter(subject, grid, count, None, pilot, mixture)
+        return Prepared(subject, samples, pilot, claim, counter, tuple(findings), counted)
     if subject.axis is not None and subject.mean_cosine is not None:
         findings.append(mean_cosine(subject, claim.chart, claim.density, claim.leaves, claim.work))
     if subject.eval is not None and subject.albedo is not None:
         findings += albedo(subject, claim.chart, claim.leaves, claim.work)
     if subject.precision == "float32" and subject.dimensions is not None:
         findings.append(_precision(subject, claim, seed))
-    grid, count, mixture = claim.grid, claim.chart.count, None
+    grid, count, beside = claim.grid, claim.chart.count, None
     ranges: Ranges | None = claim.ranges
     if subject.cdf is not None:
         grid, count = _by_cdf(subject, claim, samples, rounded)
@@ -96,10 +100,10 @@ def _prepared(subject: Subject, samples: int, seed: int, pilot: Pilot, chart: Ch
             findings.append(jacobian_agreement(subject, pilot.points))
     if len(claim.chart.axes) > 1 and (subject.cdf is not None or not _independent(grid)):
         law = subject.domain.law(pilot.points)
-        mixture = MixtureTest.of(subject, law, pilot.points, seed, 1)
+        beside = MixtureTest.of(subject, law, pilot.points, seed, 1)
     if subject.inverse is not None:
         grid, count, ranges = *_by_inverse(subject, samples, rounded), None
-    counter = _counter(subject, grid, count, ranges, pilot, mixture)
+    counter = _counter(subject, grid, count, ranges, pilot, beside)
     return Prepared(subject, samples, pilot, claim, counter, tuple(findings), True)
 
 
@@ -166,49 +170,43 @@ def _by_cdf(subject: Subject, claim: Claim, samples: int, rounded: Rounded) -> t
     return _cube(subject, labels, samples, partial(rosenblatt, subject), rounded)
 
 
-def _by_labels(
-    subject: Subject,
-    samples: int,
-    seed: int,
-    pilot: Pilot,
-    claim: Claim | None,
-    findings: list[Finding],
-    rounded: Rounded,
-) -> Prepared:
-    """Return what is to be judged by labels, because no quadrature knows the density."""
-    wanted = int(np.clip(samples // 8, PILOT, LARGE_PILOT))
-    points = pilot.points
+def _mixture(subject: Subject, samples: int, seed: int, pilot: Pilot) -> MixtureTest:
+    """Return the test by labels where nothing else knows the density: with a pilot as large as so many samples are worth."""
+    wanted, points = int(np.clip(samples // 8, PILOT, LARGE_PILOT)), pilot.points
     if wanted > PILOT and subject.pilot is None:
         points = np.concatenate([points, draw_pilot(subject, seed, 1, wanted - PILOT).points])
-    law = subject.domain.law(points)
-    mixture = MixtureTest.of(subject, law, points, seed, samples).wider(points)
-    halves = np.full((1, len(law.axes)), 0.5)
+    return MixtureTest.of(subject, subject.domain.law(points), points, seed, samples).wider(points)
+
+
+def _sampled_integrals(subject: Subject, mixture: MixtureTest, pilot: Pilot) -> list[Finding]:
+    """Return what is found by integrals over points of the known law, and by the derivative of a given cdf."""
+    findings = []
     if subject.axis is not None and subject.mean_cosine is not None:
         findings.append(sampled_integrals.mean_cosine(mixture))
     if subject.eval is not None and subject.albedo is not None:
         findings += sampled_integrals.albedo(mixture)
-    axes = len(law.axes)
-    if subject.cdf is not None and axes > 1 and not law.stepped:
+    if subject.cdf is not None and len(mixture.law.axes) > 1 and not mixture.law.stepped:
         findings.append(jacobian_agreement(subject, pilot.points))
+    return findings
+
+
+def _cells_beside(
+    subject: Subject, samples: int, claim: Claim | None, law: Law, pilot: Pilot, rounded: Rounded
+) -> tuple[Grid, Count, bool]:
+    """Return cells beside the labels, how samples are counted in them, and whether a given map tells their probabilities."""
+    axes = len(law.axes)
     if subject.inverse is not None and not law.stepped:
-        counter = _counter(subject, *_by_inverse(subject, samples, rounded), None, pilot, mixture)
-        return Prepared(subject, samples, pilot, claim, counter, tuple(findings), True)
+        return *_by_inverse(subject, samples, rounded), True
+    if subject.cdf is not None and claim is not None and axes == 1:
+        return *_by_cdf(subject, claim, samples, rounded), True
     if subject.cdf is not None and (axes == 2 or claim is not None):
-        line = claim is not None and axes == 1
         labels = (f"cdf of {law.axes[0]}", f"cdf of {law.axes[-1]}")
-        if claim is not None and line:
-            grid, count = _by_cdf(subject, claim, samples, rounded)
-        else:
-            grid, count = _cube(subject, labels, samples, partial(rosenblatt, subject), rounded)
-        counter = _counter(subject, grid, count, None, pilot, mixture)
-        return Prepared(subject, samples, pilot, claim, counter, tuple(findings), True)
+        return *_cube(subject, labels, samples, partial(rosenblatt, subject), rounded), True
 
     def place(x: np.ndarray) -> tuple[np.ndarray, ...]:
-        return tuple(law.coordinates(x, np.broadcast_to(halves, (len(x), len(law.axes)))).T)
+        return tuple(law.coordinates(x, np.full((len(x), axes), 0.5)).T)
 
-    grid = pilot_grid(law.axes, np.stack(place(pilot.points), axis=-1))
-    counter = _counter(subject, grid, place, None, pilot, mixture)
-    return Prepared(subject, samples, pilot, claim, counter, tuple(findings), False)
+    return pilot_grid(law.axes, np.stack(place(pilot.points), axis=-1)), place, False
 
 
 def _counter(

@@ -9,8 +9,8 @@ import numpy as np
 Map = Callable[[np.ndarray], np.ndarray]
 
 
-def determinant(f: Map, u: np.ndarray, step: float) -> np.ndarray:
-    """Return (n,) |det df/du| of a map (n, k) -> (n, k) at u (n, k) in the unit cube.
+def derivative(f: Map, u: np.ndarray, step: float) -> np.ndarray:
+    """Return (n, k, k) df/du, the last axis along u, of a map (n, k) -> (n, k) at u (n, k) in the unit cube.
 
     step  of the way from u to the nearer end of each axis
     """
@@ -23,4 +23,9 @@ def determinant(f: Map, u: np.ndarray, step: float) -> np.ndarray:
         high[:, axis] += h
         with np.errstate(all="ignore"):
             matrix[:, :, axis] = (f(high) - f(low)) / (high[:, axis] - low[:, axis])[:, None]
-    return np.abs(np.linalg.det(matrix))
+    return matrix
+
+
+def determinant(f: Map, u: np.ndarray, step: float) -> np.ndarray:
+    """Return (n,) its |det df/du|."""
+    return np.abs(np.linalg.det(derivative(f, u, step)))

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from fogproof.checks.diagnosis import holes
+from fogproof.checks.diagnosis.branches import chosen_wrongly
 from fogproof.checks.diagnosis.causes import likely_cause
 from fogproof.checks.diagnosis.contrast import Contrast, Fit
 from fogproof.checks.diagnosis.explaining import (
@@ -181,6 +182,9 @@ def _searched(
     crowded = by_labels and fits and bool(scaled(base)) and not _integrates_to(setting, base)
     if cause == "shape" and by_labels and fits and scaled(base) and not crowded:
         return "normalisation", scaled(base)
+    named, words = chosen_wrongly(subject, setting.contrast.x, seed) if not fits or crowded else ("", "")
+    if named:
+        return named, words
     found = explanation(subject, setting, base, samples, seed)
     if found is not None and not (cause in _ZERO and found[0] in _ANYTHING):
         return found

@@ -61,30 +61,36 @@ def explanation(subject: Subject, setting: Setting, base: Fit, samples: int, see
     if not found:
         return None
     best = found[0]
-    beyond = left_on_a_line(subject, many.contrast, best.hypothesis.density(many, best.value))
+    loose = best.hypothesis.loose
+    beyond = 0.0 if loose else left_on_a_line(subject, many.contrast, best.hypothesis.density(many, best.value))
     gain, share = explained_by(many, best, beyond)
-    needed = _FITS if best.hypothesis.cause == "another law" else _EXPLAINS
-    if gain < _STANDS_OUT or share < needed or gain < unexplained(many.contrast, many.values) - _CLEARLY:
+    if not _convincing(many, best, gain, share):
         return None
-    near = [each for each in found[1:] if each.cause != best.cause and each.score > best.score - _CLEARLY]
-    differs = beyond > 0 or refused(many, best.fit, best.density(many))
-    if share < _ALL_BUT and differs and not best.hypothesis.loose:
+    if share < _ALL_BUT and not loose and (beyond > 0 or refused(many, best.fit, best.density(many))):
         most = f"{math.floor(1000 * share) / 10:.1f}%"
         told = f"near to, but not: {best.words} (this explains {most} of the misfit, and what is left is no chance)"
         return best.cause if best.cause in _PLACES else "shape", told
     least = share * gain / (gain + unseen(many.contrast))
     most = f"{share:.0%}" if least > _ALL else f"at least {math.floor(100 * least)}%"  # what more samples may show
-    told = f"{best.words} (this explains {most} of the misfit)"
+    return _beside_rivals(best, found[1:], f"{best.words} (this explains {most} of the misfit)")
+
+
+def _convincing(setting: Setting, best: Explained, gain: float, share: float) -> bool:
+    """Return whether a hypothesis gains clearly over the claim and over general corrections of it, and nearly all there is."""
+    needed = _FITS if best.hypothesis.cause == "another law" else _EXPLAINS
+    return gain >= max(_STANDS_OUT, unexplained(setting.contrast, setting.values) - _CLEARLY) and share >= needed
+
+
+def _beside_rivals(best: Explained, others: list[Explained], told: str) -> tuple[str, str]:
+    """Return the class of error and the words of the best hypothesis beside others that explain as much."""
+    near = [each for each in others if each.cause != best.cause and each.score > best.score - _CLEARLY]
     if not near:
         return best.cause, told
     if all(abs(each.fit.likelihood - best.fit.likelihood) < _SAME for each in near):
-        others = _different(best, near)
-        return best.cause, f"{told}; that is the same as: {'; '.join(others)}"
+        return best.cause, f"{told}; that is the same as: {'; '.join(_different(best, near))}"
     if best.numbers < min(each.numbers for each in near):  # of laws that fit alike, the one that needed no fitting
-        others = _different(best, near)
-        return best.cause, f"{told}; more samples would tell it from: {'; or '.join(others)}"
-    alike = [best.words, *_different(best, near)]
-    return "shape", f"several hypotheses explain it alike: {'; or '.join(alike)}"
+        return best.cause, f"{told}; more samples would tell it from: {'; or '.join(_different(best, near))}"
+    return "shape", f"several hypotheses explain it alike: {'; or '.join([best.words, *_different(best, near)])}"
 
 
 def _different(best: Explained, others: list[Explained]) -> list[str]:
