@@ -1,7 +1,7 @@
 """Phase functions that are polynomials in mu, hence sums of cosines of the angle: values and sampling.
 
 With f(theta) = sum_k a_k cos(k theta) the share up to an angle is a sum of cosines as well, and is inverted by Newton's method
-between bounds that bisection narrows. Long sums are taken from `Pieces`: what a thousand terms are costs as much as sixteen.
+between bounds that bisection narrows. Long sums are taken from `CosinePieces`: what a thousand terms are costs as much as sixteen.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ LAST, EPS = 1e-9, 4e-16
 """Steps of Newton's method: below the first the next is the last one that counts, below the second nothing changes."""
 
 TERMS = 16
-"""Of each polynomial in `Pieces`: of fifteenth degree, cos(m theta) is one over an angle pi/m to 1e-16 (J_16(pi/2) < 1e-15)."""
+"""Of each polynomial in `CosinePieces`: of fifteenth degree, cos(m theta) is one over an angle pi/m to 1e-16 (J_16(pi/2) < 1e-15)."""
 
 
 @dataclass(frozen=True, eq=False)
-class Pieces:
+class CosinePieces:
     """A sum of at most m cosines of an angle in [0, pi], as polynomials in m equal pieces of it.
 
     coefficients  (TERMS, m) of Chebyshev polynomials in each piece
@@ -37,14 +37,14 @@ class Pieces:
     coefficients: np.ndarray
 
     @staticmethod
-    def of(a: np.ndarray) -> Pieces:
+    def of(a: np.ndarray) -> CosinePieces:
         """Interpolate sum_k a_k cos(k theta) at Chebyshev nodes of each piece: a Fourier transform has one node of all pieces."""
         m, k = len(a), np.arange(len(a))
         node = np.cos(np.pi * (np.arange(TERMS) + 0.5) / TERMS)
         at = [2 * m * np.fft.ifft(a * np.exp(0.5j * np.pi * (1 + c) / m * k), 2 * m).real[:m] for c in node]
         turned = np.cos(np.pi * np.arange(TERMS)[:, None] * (np.arange(TERMS) + 0.5) / TERMS)
         turned[0] /= 2
-        return Pieces(2 / TERMS * turned @ np.array(at))
+        return CosinePieces(2 / TERMS * turned @ np.array(at))
 
     def __call__(self, theta: np.ndarray) -> np.ndarray:
         """Return f by Clenshaw's recurrence."""
@@ -134,5 +134,5 @@ class CosineSeries:
 def _by_angle(a: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
     """Return sum_k a_k cos(k theta) as a function of theta."""
     if len(a) > 2 * TERMS:
-        return Pieces.of(a)
+        return CosinePieces.of(a)
     return lambda theta: chebyshev.chebval(np.cos(theta), a)

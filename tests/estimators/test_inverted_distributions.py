@@ -41,7 +41,7 @@ def test_pieces_are_the_sum_of_cosines(m):
     a = np.random.default_rng(3).standard_normal(m)
     theta = np.concatenate([np.linspace(0, np.pi, 1001), [1e-300, np.nextafter(np.pi, 0)]])
     direct = np.cos(theta[:, None] * np.arange(m)) @ a
-    f = cosine_series.Pieces.of(a)
+    f = cosine_series.CosinePieces.of(a)
     assert np.max(np.abs(f(theta) - direct)) < 4e-15 * np.sum(np.abs(a) * (1 + np.arange(m) / 4))
 
 
