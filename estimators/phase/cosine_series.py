@@ -24,7 +24,7 @@ LAST, EPS = 1e-9, 4e-16
 """Steps of Newton's method: below the first the next is the last one that counts, below the second nothing changes."""
 
 TERMS = 16
-"""Of each polynomial in `CosinePieces`: of fifteenth degree, cos(m theta) is one over an angle pi/m to 1e-16 (J_16(pi/2) < 1e-15)."""
+"""Of each polynomial in `CosinePieces`: over an angle pi/m, cos(m theta) is one of fifteenth degree but for J_16(pi/2) < 1e-15."""
 
 
 @dataclass(frozen=True, eq=False)
