@@ -1,11 +1,12 @@
 """Phase functions that are polynomials in mu, hence sums of cosines of the angle: values and sampling.
 
 With f(theta) = sum_k a_k cos(k theta) the share up to an angle is a sum of cosines as well, and is inverted by Newton's method
-between bounds that bisection narrows.
+between bounds that bisection narrows. Long sums are taken from `CosinePieces`: what a thousand terms are costs as much as sixteen.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -18,6 +19,43 @@ MOST_STEPS = 64
 
 FEWEST_CELLS = 4096
 """Of the grid of angles from which Newton's method starts: three steps are then enough."""
+
+LAST, EPS = 1e-9, 4e-16
+"""Steps of Newton's method: below the first the next is the last one that counts, below the second nothing changes."""
+
+TERMS = 16
+"""Of each polynomial in `CosinePieces`: over an angle pi/m, cos(m theta) is one of fifteenth degree but for J_16(pi/2) < 1e-15."""
+
+
+@dataclass(frozen=True, eq=False)
+class CosinePieces:
+    """A sum of at most m cosines of an angle in [0, pi], as polynomials in m equal pieces of it.
+
+    coefficients  (TERMS, m) of Chebyshev polynomials in each piece
+    """
+
+    coefficients: np.ndarray
+
+    @staticmethod
+    def of(a: np.ndarray) -> CosinePieces:
+        """Interpolate sum_k a_k cos(k theta) at Chebyshev nodes of each piece: a Fourier transform has one node of all pieces."""
+        m, k = len(a), np.arange(len(a))
+        node = np.cos(np.pi * (np.arange(TERMS) + 0.5) / TERMS)
+        at = [2 * m * np.fft.ifft(a * np.exp(0.5j * np.pi * (1 + c) / m * k), 2 * m).real[:m] for c in node]
+        turned = np.cos(np.pi * np.arange(TERMS)[:, None] * (np.arange(TERMS) + 0.5) / TERMS)
+        turned[0] /= 2
+        return CosinePieces(2 / TERMS * turned @ np.array(at))
+
+    def __call__(self, theta: np.ndarray) -> np.ndarray:
+        """Return f by Clenshaw's recurrence."""
+        m = self.coefficients.shape[1]
+        place = theta * (m / np.pi)
+        piece = np.clip(place.astype(np.intp), 0, m - 1)
+        x = 2 * (place - piece) - 1
+        last, one = np.zeros_like(x), np.zeros_like(x)
+        for row in self.coefficients[:0:-1]:
+            last, one = one, row[piece] + 2 * x * one - last
+        return self.coefficients[0][piece] + x * one - last
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,21 +79,26 @@ class CosineSeries:
         return a / (4 * np.pi * float(a[::2] @ (1 / (1.0 - even * even))))
 
     @cached_property
-    def _upto(self) -> np.ndarray:
-        """Coefficients of the share with a cosine up to mu."""
-        return chebyshev.chebint(2 * np.pi * self.coefficients, lbnd=-1)
+    def _value(self) -> Callable[[np.ndarray], np.ndarray]:
+        """The density by angle [1/sr]."""
+        return _by_angle(self.coefficients)
+
+    @cached_property
+    def _share(self) -> Callable[[np.ndarray], np.ndarray]:
+        """The share beyond an angle."""
+        return _by_angle(chebyshev.chebint(2 * np.pi * self.coefficients, lbnd=-1))
 
     @cached_property
     def _grid(self) -> tuple[np.ndarray, np.ndarray]:
         """Angles from pi to 0, and the share beyond each."""
         cells = max(FEWEST_CELLS, 8 * self.values.size)
         theta = np.pi * (1 - np.arange(cells + 1) / cells)
-        return theta, np.maximum.accumulate(np.clip(chebyshev.chebval(np.cos(theta), self._upto), 0, 1))
+        return theta, np.maximum.accumulate(np.clip(self._share(theta), 0, 1))
 
     def density(self, versine: np.ndarray, coversine: np.ndarray) -> np.ndarray:
         """Return f at 1 - mu and 1 + mu [1/sr]; error some eps times its greatest value."""
-        mu = 0.5 * (coversine.astype(np.float64) - versine)
-        return np.maximum(chebyshev.chebval(mu, self.coefficients), 0).astype(versine.dtype)
+        theta = 2 * np.arctan2(np.sqrt(versine.astype(np.float64)), np.sqrt(coversine.astype(np.float64)))
+        return np.maximum(self._value(theta), 0).astype(versine.dtype)
 
     def polar(self, xi: np.ndarray) -> Polar:
         """Return scattering angles and their pdf."""
@@ -65,21 +108,31 @@ class CosineSeries:
         high, low = theta[cell - 1].copy(), theta[cell].copy()
         inside = (target - share[cell - 1]) / np.maximum(share[cell] - share[cell - 1], 1e-300)
         at = high - (high - low) * np.clip(inside, 0, 1)
-        left = np.arange(len(target))
+        left, before = np.arange(len(target)), np.full_like(target, np.inf)
         for _ in range(MOST_STEPS):
             t = at[left]
-            mu = np.cos(t)
-            off = chebyshev.chebval(mu, self._upto) - target[left]
+            off = self._share(t) - target[left]
             high[left], low[left] = np.where(off < 0, t, high[left]), np.where(off < 0, low[left], t)
-            slope = 2 * np.pi * np.sin(t) * np.maximum(chebyshev.chebval(mu, self.coefficients), 1e-300)
+            slope = 2 * np.pi * np.sin(t) * np.maximum(self._value(t), 1e-300)
             with np.errstate(divide="ignore", over="ignore"):
                 step = t + off / np.maximum(slope, 1e-300)
-            step = np.where((step > low[left]) & (step < high[left]), step, 0.5 * (low[left] + high[left]))
+            step = np.where((step >= low[left]) & (step <= high[left]), step, 0.5 * (low[left] + high[left]))
             at[left] = step
-            left = left[np.abs(step - t) > 4e-16 * np.pi]
+            moved = np.abs(step - t) / np.pi
+            more = (moved > LAST) | (
+                (moved > EPS) & (moved < before / 2)
+            )  # where rounding decides, steps no longer shrink
+            left, before = left[more], moved[more]
             if len(left) == 0:
                 break
         versine, coversine = 2 * np.sin(at / 2) ** 2, 2 * np.cos(at / 2) ** 2
         return Polar(
             versine.astype(xi.dtype), coversine.astype(xi.dtype), self.density(versine, coversine).astype(xi.dtype)
         )
+
+
+def _by_angle(a: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+    """Return sum_k a_k cos(k theta) as a function of theta."""
+    if len(a) > 2 * TERMS:
+        return CosinePieces.of(a)
+    return lambda theta: chebyshev.chebval(np.cos(theta), a)

@@ -12,8 +12,10 @@ delta = 1, where both are 0/0, powers of 1 - delta take over.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 
 import numpy as np
+from scipy.special import expit
 
 from fogproof.estimators.phase.polar import Polar
 from fogproof.scene.phase import FournierForand
@@ -23,6 +25,10 @@ SERIES, TERMS = 0.35, 36
 
 SMALLEST = 1e-300
 MOST_STEPS = 100
+LAST, EPS = 1e-9, 2.3e-16
+"""Relative steps of Newton's method: below the first the next is the last one that counts, below the second nothing changes."""
+FARTHEST, DENSE, NODES = 690.0, 50.0, 512
+"""Of log(s/(1 - s)) in a table: the largest, where nodes begin to lie closer, and how many there are in a quarter of it."""
 
 
 def _constants(phase: FournierForand) -> tuple[float, float, float]:
@@ -91,21 +97,16 @@ def _beyond(phase: FournierForand, s: np.ndarray, rest: np.ndarray) -> np.ndarra
 def polar(phase: FournierForand, xi: np.ndarray) -> Polar:
     """Return scattering angles and their pdf.
 
-    The unknown is log s where less than half of the light scatters less, else log(1 - s): so either pole keeps its digits.
+    The share that scatters less is inverted where it is below half, else the one that scatters more. The unknown is log(s/(1 - s)):
+    so either pole keeps its digits, also where the median angle itself is tiny.
     """
-    nu, k, _ = _constants(phase)
     wanted = xi.astype(np.float64)
     forward = wanted >= 0.5
-    s, rest = np.empty((2, len(xi)))
+    x = np.empty(len(xi))
     with np.errstate(under="ignore", divide="ignore"):
-        target = 1 - wanted[forward]
-        start = np.clip(np.log(target) / -nu - np.log(k), np.log(SMALLEST), 0.0)
-        t = _root(lambda t: _near(phase, t, _within), target, start)
-        s[forward], rest[forward] = np.exp(t), -np.expm1(t)
-        target = wanted[~forward]
-        at_pole = 4 * np.pi * density(phase, np.array([2.0]), np.array([0.0]))
-        t = _root(lambda t: _near(phase, t, _beyond), target, np.clip(np.log(target / at_pole), np.log(SMALLEST), 0.0))
-        rest[~forward], s[~forward] = np.where(target > 0, np.exp(t), 0.0), -np.expm1(t)
+        x[forward] = _root(phase, _within, 1 - wanted[forward])
+        x[~forward] = _root(phase, _beyond, wanted[~forward])
+        s, rest = expit(x), np.where(wanted > 0, expit(-x), 0.0)
     versine = np.maximum(2 * s, np.finfo(xi.dtype).tiny)
     at_angle = versine.astype(xi.dtype), (2 * rest).astype(xi.dtype)
     return Polar(*at_angle, density(phase, *at_angle))
@@ -114,29 +115,36 @@ def polar(phase: FournierForand, xi: np.ndarray) -> Polar:
 Share = Callable[[FournierForand, np.ndarray, np.ndarray], np.ndarray]
 
 
-def _near(phase: FournierForand, t: np.ndarray, share: Share) -> tuple[np.ndarray, np.ndarray]:
-    """Return a share and its derivative in t, the logarithm of what lies between the direction and the pole it counts from."""
-    near, far = np.exp(t), -np.expm1(t)
-    s, rest = (near, far) if share is _within else (far, near)
-    return share(phase, s, rest), 4 * np.pi * near * density(phase, 2 * s, 2 * rest)
+@lru_cache(maxsize=64)
+def _table(phase: FournierForand, share: Share) -> tuple[np.ndarray, np.ndarray]:
+    """Return the logarithm of a share, rising, and where it is that: between them, where Newton's method starts."""
+    x = np.concatenate([np.linspace(-FARTHEST, -DENSE, NODES), np.linspace(-DENSE, DENSE, 4 * NODES)[1:-1]])
+    x = np.concatenate([x, np.linspace(DENSE, FARTHEST, NODES)])
+    with np.errstate(under="ignore", divide="ignore"):
+        value = np.log(share(phase, expit(x), expit(-x)))
+    if share is _beyond:
+        value, x = value[::-1], x[::-1]
+    rising = np.concatenate([[True], value[1:] > np.maximum.accumulate(value)[:-1]])
+    return value[rising], x[rising]
 
 
-def _root(
-    share: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]], target: np.ndarray, start: np.ndarray
-) -> np.ndarray:
-    """Return t in [log SMALLEST, 0] at which a rising share is the target: Newton's method, kept between bounds."""
-    low, high = np.maximum(start - 40.0, np.log(SMALLEST)), np.zeros_like(start)
-    low = np.where(share(low)[0] < target, low, np.log(SMALLEST))
-    t, left = start, np.arange(len(start))
+def _root(phase: FournierForand, share: Share, target: np.ndarray) -> np.ndarray:
+    """Return x = log(s/(1 - s)) in [-FARTHEST, FARTHEST] at which a share is the target: Newton's method, kept between bounds."""
+    sign = 1.0 if share is _within else -1.0
+    x = np.interp(np.log(target), *_table(phase, share))
+    low, high = np.full_like(x, -FARTHEST), np.full_like(x, FARTHEST)
+    left, before = np.arange(len(x)), np.full_like(x, np.inf)
     for _ in range(MOST_STEPS):
-        at = t[left]
-        value, slope = share(at)
-        off = value - target[left]
+        at = x[left]
+        s, rest = expit(at), expit(-at)
+        off = sign * (share(phase, s, rest) - target[left])
         low[left], high[left] = np.where(off < 0, at, low[left]), np.where(off < 0, high[left], at)
-        step = at - off / slope
-        step = np.where((step > low[left]) & (step < high[left]), step, 0.5 * (low[left] + high[left]))
-        t[left] = step
-        left = left[np.abs(step - at) > 1e-15 * np.maximum(np.abs(at), 1.0)]
+        step = at - off / (4 * np.pi * s * rest * density(phase, 2 * s, 2 * rest))
+        step = np.where((step >= low[left]) & (step <= high[left]), step, 0.5 * (low[left] + high[left]))
+        x[left] = step
+        moved = np.abs(step - at) / np.maximum(np.abs(at), 1.0)
+        more = (moved > LAST) | ((moved > EPS) & (moved < before / 2))  # where rounding decides, steps no longer shrink
+        left, before = left[more], moved[more]
         if len(left) == 0:
             break
-    return t
+    return x

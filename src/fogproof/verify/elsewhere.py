@@ -16,13 +16,13 @@ from fogproof.catalogue.cases import SamplerCase
 from fogproof.checks import Verdict, fresh_seed
 from fogproof.checks.sampler_parts import SamplerCheck
 from fogproof.checks.streams import BATCH
-from fogproof.distributed import PART, check_distributed
+from fogproof.distributed import check_distributed
 from fogproof.errors import InvalidInputError
 from fogproof.input_files import open_regular
 from fogproof.verify.selection import whole
 from fogproof.whole_files import write_file
 
-LEAST = PART * BATCH
+LEAST = 64 * BATCH
 """Samples of a case from which on others draw for it: fewer are there before a worker has started."""
 
 _SEED = "seed.json"

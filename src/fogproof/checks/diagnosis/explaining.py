@@ -61,11 +61,12 @@ def explanation(subject: Subject, setting: Setting, base: Fit, samples: int, see
     if not found:
         return None
     best = found[0]
-    beyond = left_on_a_line(subject, many.contrast, best.hypothesis.density(many, best.value))
+    loose = best.hypothesis.loose
+    beyond = 0.0 if loose else left_on_a_line(subject, many.contrast, best.hypothesis.density(many, best.value))
     gain, share = explained_by(many, best, beyond)
     if not _convincing(many, best, gain, share):
         return None
-    if share < _ALL_BUT and not best.hypothesis.loose and (beyond > 0 or refused(many, best.fit, best.density(many))):
+    if share < _ALL_BUT and not loose and (beyond > 0 or refused(many, best.fit, best.density(many))):
         most = f"{math.floor(1000 * share) / 10:.1f}%"
         told = f"near to, but not: {best.words} (this explains {most} of the misfit, and what is left is no chance)"
         return best.cause if best.cause in _PLACES else "shape", told
