@@ -11,7 +11,7 @@ from fogproof.study.aggregate import pooled
 from fogproof.study.judgement import judge
 from fogproof.study.measures import measure
 from fogproof.study.methods import table as methods
-from fogproof.study.scatter import beyond
+from fogproof.study.tails import beyond
 
 COUNTS = (100, 1000, 4000)
 TRIES = 12

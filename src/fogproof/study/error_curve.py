@@ -16,8 +16,9 @@ from fogproof.study.convergence import Estimate, Floor
 from fogproof.study.judgement import Judged
 from fogproof.study.reaching import TARGETS, ErrorOverTime, Reach, reach_of, variance_law
 from fogproof.study.replicate_means import student_quantile
-from fogproof.study.scatter import beyond, degrees_of_freedom, spread
+from fogproof.study.scatter import degrees_of_freedom, spread
 from fogproof.study.speed import Times
+from fogproof.study.tails import beyond
 
 _NO_LAW = 0.001
 """Measured errors so improbable under sqrt(variance / count) are taken as they are: realisations in a call depend on each other."""

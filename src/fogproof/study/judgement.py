@@ -10,7 +10,6 @@ from typing import Literal
 import numpy as np
 
 from fogproof.checks import Finding
-from fogproof.checks.statistics.heavy import TailEstimate
 from fogproof.checks.statistics.known import NOTHING, Known
 from fogproof.checks.statistics.means import LEAST, mean_test
 from fogproof.checks.statistics.moments import ORDINARY, Moments
@@ -23,6 +22,7 @@ from fogproof.study.between_replicates import BetweenReplicates, Calls, between_
 from fogproof.study.cells import Cell
 from fogproof.study.question import UNITS
 from fogproof.study.replicate_means import as_calls_allow, judged_by_replicates
+from fogproof.study.tails import heavy_tail, tail_of
 
 Lack = Literal["", "samples", "law", "tail", "resolution", "calls", "range"]
 EPS = float(np.finfo(float).eps)
@@ -32,8 +32,6 @@ BY_BIAS = frozenset({"mean", "value", "random points"})
 """The checks that a bias fails."""
 _THIRD = 3.0
 """The tail index below which there is no third moment: skewness then grows with the samples instead of wearing off."""
-_SUSPICIOUS = 0.05
-"""Share of one realisation in the sum of squares that is worth a warning, where it is twice that of a normal law's largest."""
 
 
 @dataclass(frozen=True)
@@ -133,7 +131,7 @@ def judge(cell: Cell, levels: Sequence[Level], variance: Reference | None, alpha
             findings.append(Finding("bounds", "rejected", told, cause="contract"))
         findings += _against_theory(levels, variance, alpha, known, value, error, between)
         findings += [between.finding] if between.finding else []
-        warning = _heavy(levels, data, value)
+        warning = heavy_tail(levels, data, value)
         if warning and variance is None and "infinite" in warning:
             findings[0] = replace(findings[0], outcome="inconclusive", message=f"{findings[0].message}; {warning}")
         elif coarse:
@@ -274,37 +272,3 @@ def _by_replicates(level: Level, value: float, error: float, alpha: float) -> Fi
     """
     step = float(np.ptp(level.rows[:, 5:7])) / level.count
     return judged_by_replicates("mean", level.rows[:, 1], value, resolution_of(value, error), alpha, step=step)
-
-
-def excess(data: Moments) -> float:
-    """Return the excess kurtosis, 0 where nothing varies."""
-    return data.n * (data.m4 / data.m2) / data.m2 - 3 if data.m2 > 0 else 0.0
-
-
-def tail_of(levels: Sequence[Level], data: Moments, value: float) -> TailEstimate:
-    """Return the tail of the deviations from the value."""
-    largest = _complete(levels)
-    # Hill's estimate takes a thousandth of the sample; where fewer deviations are known, it looks further out.
-    return TailEstimate(value, largest, min(data.n, 1000 * (len(largest) - 1)))
-
-
-def _heavy(levels: Sequence[Level], data: Moments, value: float) -> str:
-    tail = tail_of(levels, data, value)
-    index, spread = tail.index()
-    if tail.suspect():
-        return f"infinite variance suspected: the tail has index {index:.2g} +- {spread:.1g}, where 2 is the least"
-    if data.largest_share > max(
-        _SUSPICIOUS, 4 * math.log(max(data.n, 2)) / data.n
-    ):  # of n normal ones: about 2 ln(n) / n
-        return f"heavy tail: one realisation of {data.n} has {data.largest_share:.0%} of the variance"
-    return ""
-
-
-def _complete(levels: Sequence[Level]) -> np.ndarray:
-    """Return the largest deviations over all levels that are known whole."""
-    known = [level.tail for level in levels if len(level.tail)]
-    if len(known) < len([level for level in levels if level.count * level.replicates >= 64]):
-        return np.empty(0)
-    together = np.sort(np.concatenate(known)) if known else np.empty(0)
-    least = max((tail[0] for tail in known), default=0.0)
-    return together[together >= least]

@@ -21,8 +21,9 @@ from fogproof.study.judgement import BY_BIAS, Judged, doubted, inherited, judge,
 from fogproof.study.methods.table import kind_of, options_of
 from fogproof.study.reaching import TARGETS, Reach
 from fogproof.study.replicate_means import student_quantile
-from fogproof.study.scatter import beyond, degrees_of_freedom, kurtosis, spread
+from fogproof.study.scatter import degrees_of_freedom, kurtosis, spread
 from fogproof.study.speed import Times, times_of
+from fogproof.study.tails import beyond
 
 _LEVEL = 0.2
 """An error of which so much stays for good is on its way to a level, not down a power of the count."""
