@@ -135,7 +135,7 @@ def test_a_damaged_store_is_put_aside_and_salvaged(tmp_path, undisturbed, damage
 
 @pytest.mark.parametrize("word", [b"batches", b"stretches", b"sessions", b"CREATE", b"TABLE"])
 def test_a_schema_whose_words_are_no_text_is_damage(tmp_path, word, finished):
-    """SQLite's own error quotes them then, and cannot be read either."""
+    """SQLite's own error quotes them then, and cannot be read either. Batches whose table has its name are all taken over."""
     finished(tmp_path)
     path = tmp_path / FILE
     data = path.read_bytes()
@@ -144,7 +144,8 @@ def test_a_schema_whose_words_are_no_text_is_damage(tmp_path, word, finished):
     with pytest.raises(StoreError, match=r"(?s)is damaged.*--salvage"), opened(tmp_path, STUDY):
         pass
     with opened(tmp_path, STUDY, salvage=True) as store:
-        assert not set(store.done()) - set(range(10_000))
+        every = len(batches_of(cells_of(STUDY)))
+        assert len(store.done()) == (every if word in (b"stretches", b"sessions") else 0)
 
 
 def test_salvaging_finds_most_of_a_torn_file(tmp_path, finished):
