@@ -16,7 +16,7 @@ from fogproof.reports.records.runs import Case, Status
 from fogproof.reports.records.studies import as_run
 from fogproof.reports.records.study_record import Answer, SceneRecord, StudyEntry, StudyRecord, TargetRecord
 from fogproof.reports.text import file_stem
-from fogproof.text import unfinished
+from fogproof.text import marked, unbiased, unfinished
 from fogproof.whole_files import write_file
 
 
@@ -87,7 +87,8 @@ def write_study_page(study: StudyRecord, folder: Path) -> Path:
         has_csv=(folder / "results.csv").exists(),
         headline=headline(study, counts),
         tone=_tone(study, counts),
-        rejected_for=rejected_for,
+        unbiased_in_words=_unbiased,
+        marked=marked,
     )
     return write_file(folder / "index.html", page)
 
@@ -130,6 +131,10 @@ def rejected_for(entry: StudyEntry) -> str:
     """Return the checks that rejected an estimator if none of them is about its bias, else ""."""
     checks = [finding.check for finding in entry.findings if finding.outcome == "rejected"]
     return "" if {"mean", "value", "random points"} & set(checks) else ", ".join(checks)
+
+
+def _unbiased(entry: StudyEntry) -> str:
+    return unbiased(entry.status, entry.axis != "samples", entry.unbiased_to, rejected_for(entry))
 
 
 def _tone(study: StudyRecord, counts: Mapping[Status, int]) -> str:

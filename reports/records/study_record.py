@@ -77,7 +77,10 @@ class Timing:
 
 @dataclass(frozen=True)
 class TargetRecord:
-    """What a relative error takes; None if it is not reached: `why` says how near the last count comes, in `low` seconds."""
+    """What a relative error takes; None if it is not reached: `why` says how near the last count comes, in `low` seconds.
+
+    unless  what was not seen and would make it longer: a bias of so much, or values too rare to be met
+    """
 
     error: float
     how: Literal["measured", "less-than", "extrapolated", "not-reached", "rises", "never"]
@@ -86,6 +89,7 @@ class TargetRecord:
     seconds: float | None
     low: float
     high: float | None
+    unless: Literal["", "bias", "rare"] = ""
 
 
 @dataclass(frozen=True)
@@ -134,13 +138,18 @@ class StudyEntry:
 
 @dataclass(frozen=True)
 class SoonestRecord:
-    """Who comes to an error in the least time, who may be `beside` it, and who may be sooner and is `waiting` for more samples."""
+    """Who comes to an error in the least time, who may be `beside` it, and who may be sooner and is `waiting` for more samples.
+
+    Of those the `unsure` come to it, but values too rare to be met may hold more of the error.
+    """
 
     name: str
     how: str
     seconds: float
+    unless: Literal["", "bias", "rare"] = ""
     beside: tuple[str, ...] = ()
     waiting: tuple[str, ...] = ()
+    unsure: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

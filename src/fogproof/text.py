@@ -54,12 +54,53 @@ def p_value(p: float, digits: int = 3) -> str:
     return f"{p:.{digits}g}" if p > 0 else "< 1e-300"
 
 
+_UNITS = (("d", 86_400.0), ("h", 3600.0), ("min", 60.0), ("s", 1.0), ("ms", 1e-3), ("µs", 1e-6))
+
+
 def duration(seconds: float, space: str = " ") -> str:
-    """Return a time with a unit that suits it."""
-    for unit, size in (("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)):
-        if seconds >= size:
-            return f"{seconds / size:.3g}{space}{unit}"
-    return f"{seconds / 1e-9:.3g}{space}ns"
+    """Return a time with a unit that suits it.
+
+    >>> duration(1490), duration(0.000082), duration(0.9999)
+    ('24.8 min', '82 µs', '1 s')
+    """
+    rounded = float(f"{seconds:.3g}")
+    unit, size = next((pair for pair in _UNITS if rounded >= pair[1]), ("ns", 1e-9))
+    number = float(f"{seconds / size:.3g}")
+    return f"{number:,.0f}{space}{unit}" if number >= 1000 else f"{number:g}{space}{unit}"
+
+
+def share(part: float) -> str:
+    """Return a share in per cent, with two digits.
+
+    >>> share(0.0834), share(0.00034), share(1.234)
+    ('8.3 %', '0.034 %', '120 %')
+    """
+    return f"{float(f'{100 * part:.2g}'):g} %"
+
+
+def unbiased(status: str, exact: bool, seen: float | None, wrong: str) -> str:
+    """Return whether an estimator of a study is unbiased.
+
+    exact  whether nothing is random
+    seen   the least bias that would have been seen, relative to the reference; None where nobody needs to know
+    wrong  for what it was rejected, "" for a bias
+    """
+    words = {
+        "passed": "exact" if exact else f"yes, to {share(seen)}" if seen else "yes",
+        "known": "no, as declared",
+        "rejected": f"rejected: {wrong}" if wrong else "no: rejected",
+        "inconclusive": "not sure yet",
+    }
+    return words[status]
+
+
+def marked(time: str, how: str, unless: str) -> str:
+    """Return the time to an error with the marks of what it is.
+
+    how     "<" less than that, "~" beyond the last count
+    unless  "*" if unbiased, "?" if values too rare to be met hold no more of the error
+    """
+    return {"less-than": "< ", "extrapolated": "~ "}.get(how, "") + time + {"bias": " *", "rare": " ?"}.get(unless, "")
 
 
 def spreadsheet_cell(value: Any) -> Any:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from study_levels import COUNTS, MEAN, Law, cell, level, normal
 
+from fogproof.contracts import Reference
 from fogproof.study.batches import COLUMNS, draw_batch
 from fogproof.study.convergence import Z, order_of
 from fogproof.study.judgement import inherited, judge
@@ -62,6 +63,29 @@ def test_sobol_points_inherit_what_random_ones_are_rejected_for():
     )
     assert inherited(right, dependent).wrong == dependent.wrong == {"scatter of replicates"}
     assert inherited(right, biased).wrong == {"random points"}
+
+
+@pytest.mark.parametrize("off", [4.4e-16, -4.4e-16, 0.0])
+@pytest.mark.parametrize("jitter", [0.0, 4.4e-16])
+def test_a_variance_of_0_is_right_of_what_is_right_to_rounding(off, jitter):
+    """The reference and sums in another order are off by more than binary64's last digit; an error above that is found."""
+    rng, none = np.random.default_rng(), Reference(np.asarray(0.0))
+
+    near = [level(MEAN + off + jitter * rng.integers(2, size=(16, n))) for n in COUNTS]
+    assert judge(cell(), near, none, 1e-9).outcome == "not rejected"
+    varies = [level(MEAN + 1e-9 * rng.normal(size=(16, n))) for n in COUNTS]
+    assert judge(cell(), varies, none, 1e-9).wrong == {"variance"}
+    beside = [level(np.full((16, n), MEAN + 1e-10)) for n in COUNTS]
+    assert "mean" in judge(cell(), beside, none, 1e-9).wrong
+
+
+def test_rounding_is_no_error_of_a_tiny_variance():
+    """It changes the root of a variance by as much as it moves the realisations."""
+    rng, tiny = np.random.default_rng(), 1e-14
+    drawn = [level(MEAN + tiny * rng.normal(size=(16, n))) for n in COUNTS]
+    for deviation, wrong in ((tiny, False), (0.9 * tiny, False), (1e-9, True)):
+        judged = judge(cell(), drawn, Reference(np.asarray(deviation**2)), 1e-9)
+        assert ("variance" in judged.wrong) == wrong
 
 
 def test_few_values_of_a_normal_law_are_few_and_not_skewed():

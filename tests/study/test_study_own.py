@@ -14,8 +14,11 @@ from study_fixtures import RAY, toml
 from fogproof.cli.commands import cli as command
 from fogproof.errors import FogproofError
 from fogproof.study import read_study, run_study
+from fogproof.study.batches import draw_batch
 from fogproof.study.cells import cells_of, prepare
 from fogproof.study.files import differences
+from fogproof.study.methods import own as own_methods
+from fogproof.study.plan import batches_of
 from fogproof.study.trial import try_own
 
 MINE = """
@@ -64,6 +67,15 @@ def test_it_is_judged_like_any_other(tmp_path, executor):
         "analog + sobol": "passed",
     }
     assert record["scenes"][0]["estimators"][0]["kind"] == "my_module:Analog"
+
+
+def test_drawing_is_nothing_but_drawing(tmp_path, monkeypatch):
+    """With Sobol points too: what the study wants to know of the class is asked before time is taken."""
+    cells = cells_of(read_study(study_file(tmp_path / "s", [{"kind": "my_module:Analog"}])))
+    prepare(cells)
+    monkeypatch.setattr(own_methods, "digest_of", lambda *_: pytest.fail("sources are read while time is taken"))
+    for batch in batches_of(cells):
+        assert draw_batch(cells[batch.cell], batch, 0.5).moments[0, 0] == batch.samples
 
 
 def test_a_changed_source_is_another_study(tmp_path):

@@ -168,22 +168,59 @@ def test_those_that_are_not_named_are_counted():
 
 
 def test_a_speed_of_what_is_only_bounded_is_a_bound():
-    """However sure the call's own cost is, of which those that are compared in words make use."""
+    """Numbers and words have one rule: nothing "is k times" as fast as what takes less than its first count, or than that first."""
     wobble = np.linspace(1, 1.001, ROUNDS)
     first, second = (Timed(name, seconds * wobble) for name, seconds in (("first", 1.0), ("second", 2.0)))
 
     def speed(*bounded):
         for one in (first, second):
             how = "less-than" if one in bounded else "measured"
-            one.reaches = tuple(replace(reach, how=how, share=0.99) for reach in one.reaches)
-        assert "first is soonest" in ranked([first, second])["text"].lower()
-        found = second.record["speed"]["relative"]
-        return found["low"], found["high"]
+            one.reaches = tuple(replace(reach, how=how) for reach in one.reaches)
+        text, found = ranked([first, second])["text"].lower(), second.record["speed"]["relative"]
+        assert ("first is soonest" in text) == (found["high"] < 1) == ("not to be told from second" not in text)
+        said = re.search("to 1 % first is (.*) as fast as second", text)
+        return found["low"], found["high"], said and said[1]
 
-    assert speed() == pytest.approx((0.5, 0.5), rel=1e-9)
-    assert speed(second) == (pytest.approx(0.5, rel=1e-9), np.inf)
-    assert speed(first) == (0.0, pytest.approx(0.5, rel=1e-9))
-    assert speed(first, second) == (0.0, np.inf)
+    assert speed() == (*(pytest.approx(0.5, rel=1e-9),) * 2, "2 times")
+    assert speed(second) == (pytest.approx(0.5, rel=1e-9), np.inf, None)
+    assert speed(first) == (0.0, pytest.approx(0.5, rel=1e-9), "at least 2 times")
+    assert speed(first, second) == (0.0, np.inf, None)
+
+
+@pytest.mark.parametrize("hidden", [(False, False), (True, False), (False, True), (True, True)])
+def test_a_time_on_condition_is_compared_on_that_condition(hidden):
+    """A bias that is not seen makes later, never sooner: it leaves open what is told from one without, and nothing between two."""
+    wobble = np.linspace(1, 1.001, ROUNDS)
+    scene = [Timed(name, seconds * wobble) for name, seconds in (("first", 1.0), ("second", 2.0))]
+    for one, hides in zip(scene, hidden, strict=True):
+        one.reaches = tuple(replace(reach, unless="bias" if hides else "") for reach in one.reaches)
+    said = ranked(scene)
+    lines, found = said["text"].split("\n"), scene[1].record["speed"]["relative"]
+    assert ("(if unbiased)" in lines[0]) == hidden[0]
+    assert (found["high"] < 1) == (hidden != (True, False)) == (said["soonest"][0]["all"]["beside"] == [])
+    assert (found["low"] == 0) == (hidden == (False, True))
+    words = {(False, False): " is 2", (False, True): " is at least 2", (True, True): ", if unbiased, is 2"}
+    assert lines[1:] == ([f"To 1 % first{words[hidden]} times as fast as second."] if hidden in words else [])
+
+
+def test_values_that_were_not_met_leave_it_open_who_is_soonest():
+    wobble = np.linspace(1, 1.001, ROUNDS)
+    known, rare = Timed("known", 2.0 * wobble), Timed("rare", wobble)
+    rare.reaches = tuple(replace(reach, unless="rare") for reach in rare.reaches)
+    said = ranked([rare, known])
+    assert (said["best"], said["ranking"]) == ("known", ["known", "rare"])
+    assert [row["all"]["unsure"] for row in said["soonest"]] == [["rare"]] * 3
+    assert said["text"] == (
+        "Who is soonest to 1 %, 0.1 % and 0.01 % these counts do not tell: rare is not sure yet. So far: 1 % known in 2 s, "
+        "0.1 % known in 2 s, 0.01 % known in 2 s."
+    )
+    assert rare.record["speed"]["relative"]["low"] == 0
+    late = Timed("late", 9 * wobble)
+    late.reaches = tuple(replace(reach, unless="rare") for reach in late.reaches)
+    assert ranked([late, known])["text"].startswith("Known is soonest: ")  # rare values make it later still
+    assert ranked([rare])["text"].startswith(
+        "Who is soonest to 1 %, 0.1 % and 0.01 % these counts do not tell: rare is not sure"
+    )
 
 
 def test_what_rounds_to_once_as_fast_is_not_said():

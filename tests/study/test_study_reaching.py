@@ -83,23 +83,44 @@ def test_no_interval_goes_below_the_time_of_a_call_that_is_not_enough():
     assert 1.7 < unsure.relative_to(sure).low < 2.2
 
 
-@pytest.mark.parametrize(
-    ("time", "least", "most"),
-    [
-        (lambda n: 1e-4 + 1e-9 * n, 0.9, 1.0),  # the call's own cost: one sample takes as long
-        (lambda n: 1e-6 * n, 0.05, 0.1),  # samples alone
-        (lambda n: 1e-6 * np.sqrt(n), 0.25, 10**-0.5),
-        (lambda n: 1e-6 * np.minimum(n, 100), 0.0, 0.0),  # fewer samples may be cheaper than any power tells
-    ],
-)
-def test_what_takes_less_than_the_first_count_takes_what_a_call_costs(time, least, most):
-    times = [Times(time(n) * np.exp(0.01 * np.roll([1, -1, 2, -2] * 2, k))) for k, n in enumerate(COUNTS)]
+def test_what_takes_less_than_the_first_count_may_take_nothing():
+    """Whatever the counts say of a call's own cost: below the first it may be another."""
     errors = [Estimate(e, e, e) for e in (1e-3, 1e-4, 1e-5)]
-    first = reaches_of(ErrorOverTime(COUNTS, errors, times), 1.0, 0.0)[0]
-    sure = Reach(0.01, "measured", "", 10.0, Times(np.full(8, times[0].estimate.value)))
+    first = reaches_of(ErrorOverTime(COUNTS, errors, flat(1e-9)), 1.0, 0.0)[0]
+    sure = Reach(0.01, "measured", "", 10.0, Times(np.full(8, flat(1e-9)[0].estimate.value)))
     assert first.how == "less-than"
-    assert least <= first.relative_to(sure).low <= most
-    assert sure.relative_to(first).high == pytest.approx(1 / most if most else np.inf, rel=1 - least if least else 0)
+    assert first.seconds.low == first.relative_to(sure).low == 0
+    assert sure.relative_to(first).high == np.inf
+
+
+@pytest.mark.parametrize("needed", [5, 500, 5e4])
+def test_a_bias_that_was_not_seen_is_part_of_the_error(needed):
+    """Of half the error asked for it takes a third more samples, of all of it the time has no end."""
+    law = Estimate(*(needed * 1e-4 * f for f in (1, 0.99, 1.01)))
+    errors = [Estimate(e, e, e) for e in np.sqrt(law.value / COUNTS)]
+
+    def seconds(bias, rare=False, times=None):
+        times = times or [Times(1e-6 * n * np.array([0.999, 1.001] * 4)) for n in COUNTS]
+        found = reach_of(ErrorOverTime(COUNTS, errors, times, law, bias=bias, rare=rare), 0.01, 0.01)
+        return found.unless, found.seconds
+
+    (unless, without), (_, half) = seconds(0.0), seconds(0.005)
+    assert unless == ""
+    assert half.value == without.value
+    assert half.high / without.high >= (1.3 if needed > COUNTS[0] else 1.0)
+    for bias in (0.01, 0.02):
+        unless, there = seconds(bias)
+        assert (unless, there.value, there.high) == ("bias", without.value, np.inf)
+    unless, there = seconds(0.0, rare=True)
+    assert (unless, there.value, there.high) == ("rare", without.value, np.inf)
+
+
+def test_the_first_count_may_not_be_enough_for_the_largest_variance():
+    law = Estimate(*(COUNTS[0] * 1e-4 * f for f in (0.9, 0.5, 1.8)))
+    errors = [Estimate(e, e, e) for e in np.sqrt(law.value / COUNTS)]
+    found = reach_of(ErrorOverTime(COUNTS, errors, flat(1e-4), law), 0.01, 0.01)
+    assert found.how == "less-than"
+    assert found.seconds.high > 1.6 * found.seconds.value
 
 
 def test_a_smaller_error_that_noise_makes_sooner_takes_as_long_as_the_larger():

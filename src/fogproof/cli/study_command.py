@@ -15,7 +15,7 @@ from fogproof.cli.force import FORCE, take
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
 from fogproof.cli.values import FOLDER, PLACE
-from fogproof.text import duration, one_line
+from fogproof.text import duration, marked, one_line, unbiased
 
 
 @click.command("study")
@@ -127,33 +127,24 @@ def _print_rows(record: dict[str, Any]) -> None:
             say("  " + "  ".join([first, *rest]).rstrip())
         say("")
     if record["scenes"]:
-        say(
-            "to 1 %: time of an estimate with a relative root mean square error, bias included, of 1 %; < where the first count is"
-        )
-        say(
-            "better already, > where the last is not enough, ~ beyond the last count. speed: of that time, the soonest being 1."
-        )
+        say(_MARKS)
 
 
-_UNBIASED = {"passed": "yes", "known": "no, as declared", "rejected": "NO", "inconclusive": "not sure"}
+_MARKS = """\
+to 1 %: time of an estimate with a relative root mean square error, bias included, of 1 %; < where the first count is better
+already, > where the last is not enough, ~ beyond the last count; * if unbiased: a bias of so much would not have been seen;
+? if no values too rare to be met hold more of the error. speed: of that time, the soonest being 1."""
 
 
 def _cells(estimator: dict[str, Any], targets: int) -> list[str]:
     speed, order = estimator["speed"], estimator["order"]
-    unbiased = (
-        "exact"
-        if estimator["status"] == "passed" and estimator["axis"] != "samples"
-        else _UNBIASED[estimator["status"]]
-    )
     checks = [finding["check"] for finding in estimator["findings"] if finding["outcome"] == "rejected"]
-    if estimator["status"] == "rejected" and not {"mean", "value", "random points"} & set(checks):
-        unbiased = f"WRONG {checks[0]}"
-    if estimator["unbiased_to"]:
-        unbiased += f", to {100 * estimator['unbiased_to']:.0f} %"
+    wrong = "" if {"mean", "value", "random points"} & set(checks) else ", ".join(checks)
+    answer = unbiased(estimator["status"], estimator["axis"] != "samples", estimator["unbiased_to"], wrong)
     bias = f"{estimator['bias']['value']:+.1e}" if estimator["bias"] else ""
     times = [_time(target) for target in speed["targets"]] if speed else []
     relative = _relative(speed["relative"]) if speed and speed["relative"] else ""
-    words = [_name(estimator), unbiased, bias, f"{order['value']:.2f}" if order else ""]
+    words = [_name(estimator), answer, bias, f"{order['value']:.2f}" if order else ""]
     return [*words, *(times or [""] * targets), relative]
 
 
@@ -175,7 +166,7 @@ def _time(target: dict[str, Any]) -> str:
         return str(target["how"])
     if target["seconds"] is None:
         return f"> {duration(target['low'])}"
-    return {"less-than": "< ", "extrapolated": "~ "}.get(target["how"], "") + duration(target["seconds"])
+    return marked(duration(target["seconds"]), target["how"], target["unless"])
 
 
 def _explain(record: dict[str, Any]) -> None:

@@ -165,7 +165,7 @@ def _again(cell: Cell, estimator: Estimator, batch: Batch, cpu: float) -> tuple[
 
 def _with_sobol_points(cell: Cell, estimator: Estimator, batch: Batch) -> list[tuple[Any, int]]:
     """Draw each replicate with a scrambling of its own; a batch inside a replicate goes on in its sequence. Return calls' draws."""
-    dimensions = cell.method.dimensions
+    dimensions = cell.dimensions
     assert dimensions is not None
     drawn = []
     for replicate in range(batch.first, batch.first + batch.replicates):

@@ -79,6 +79,12 @@ class Cell:
             raise UnsupportedError(f"{what}: nothing converges to it", f"scenes.{self.scene.name}")
         return reference
 
+    @cached_property
+    def dimensions(self) -> int | None:
+        """Uniforms a realisation, asked once: one's own estimator has its sources read for it."""
+        dimensions: int | None = self.method.dimensions
+        return dimensions
+
     def estimator(self, count: int) -> Estimator:
         """Return the estimator, called once before anybody measures: loading and compiling are not its time."""
         count = count if self.method.axis == "steps" else 0
@@ -87,6 +93,7 @@ class Cell:
                 estimator = self.method.make(self.scene, count)
                 numbers_of(self.name, estimator.draw(np.random.default_rng(0), 1), 1)
                 if self.points == "sobol":
+                    _ = self.dimensions
                     SobolSequence(1, np.random.default_rng(0), np.random.default_rng(0))  # loads scipy.stats
                 self._made[count] = estimator
             return self._made[count]

@@ -18,6 +18,7 @@ from fogproof.study.reaching import TARGETS, ErrorOverTime, Reach, reach_of, var
 from fogproof.study.replicate_means import student_quantile
 from fogproof.study.scatter import degrees_of_freedom, spread
 from fogproof.study.speed import Times
+from fogproof.study.tails import beyond
 
 _NO_LAW = 0.001
 """Measured errors so improbable under sqrt(variance / count) are taken as they are: realisations in a call depend on each other."""
@@ -32,6 +33,7 @@ def error_curve(
     variance: Reference | None,
     judged: Judged,
     stays: float,
+    bias: Estimate | None,
 ) -> ErrorOverTime | None:
     """Return the error against time; None where nothing was drawn, or not every realisation is a number."""
     if not levels or any(level.bad for level in levels):
@@ -48,13 +50,15 @@ def error_curve(
         and not judged.infinite
     ):
         exact = variance is not None and 0 <= float(variance.error) < 1e-6 * float(variance.value) < math.inf
-        law = variance_law(
-            float(variance.value) if exact and variance is not None else data.variance, spread(data), exact
-        )
+        size = float(variance.value) if exact and variance is not None else data.variance
+        law = variance_law(size, spread(data), beyond(levels, data, float(cell.reference.value)), exact)
         law = law if data.m2 > 0 and _follows(law.value, cell, levels, errors, data) else None
         # Where calls depend on each other too weakly to be told, their error is that of so much more variance.
         law = law and replace(law, high=law.high * judged.design_effect)
-    return ErrorOverTime(counts, errors, times, law, stays, cell.method.axis != "samples")
+    hidden = 0.0 if law is None or bias is None else max(-bias.low, bias.high)
+    rare = judged.rare and not (cell.method.bias and data.low == data.high)
+    smooth = cell.method.axis != "samples"
+    return ErrorOverTime(counts, errors, times, law, stays, smooth, bias=hidden, rare=rare)
 
 
 def stays_for_good(

@@ -85,27 +85,6 @@ def least_beyond(counts: np.ndarray, times: Sequence[Times], count: float) -> fl
     return max(least, last)
 
 
-def share_before(counts: np.ndarray, times: Sequence[Times], count: float) -> float:
-    """Return the least share of the first count's time that a count before it takes.
-
-    A call that costs something once and so much a sample grows by no greater power of the count before the first count than behind
-    it. 0 where that power is not known, or was shown to fall.
-    """
-    if len(counts) < 2 or count >= counts[0]:
-        return 0.0 if len(counts) < 2 else 1.0
-    powers = [_powers_between(counts, times, k) for k in range(1, min(len(counts), 3))]
-    low, high = powers[0]
-    if high == math.inf or low > powers[-1][1]:
-        return 0.0
-    return float((count / counts[0]) ** max(high, 0.0))
-
-
-def _powers_between(counts: np.ndarray, times: Sequence[Times], k: int) -> tuple[float, float]:
-    """Return between which powers of the count the time grows from the count k - 1 to the count k."""
-    a, b = _same_rounds(times[k - 1], times[k])
-    return _interval(np.log(b / a) / math.log(counts[k] / counts[k - 1]))
-
-
 def power_at(counts: np.ndarray, times: Sequence[Times], count: float) -> float:
     """Return the power of the count with which the time grows around a count, 0 at least."""
     if len(counts) == 1:

@@ -10,7 +10,6 @@ from typing import Literal
 import numpy as np
 
 from fogproof.checks import Finding
-from fogproof.checks.statistics.heavy import TailEstimate
 from fogproof.checks.statistics.known import NOTHING, Known
 from fogproof.checks.statistics.means import LEAST, mean_test
 from fogproof.checks.statistics.moments import ORDINARY, Moments
@@ -23,15 +22,16 @@ from fogproof.study.between_replicates import BetweenReplicates, Calls, between_
 from fogproof.study.cells import Cell
 from fogproof.study.question import UNITS
 from fogproof.study.replicate_means import as_calls_allow, judged_by_replicates
+from fogproof.study.tails import heavy_tail, tail_of
 
-Lack = Literal["", "samples", "law", "resolution", "calls", "range"]
+Lack = Literal["", "samples", "law", "tail", "resolution", "calls", "range"]
 EPS = float(np.finfo(float).eps)
 ROUNDING = 1e-12
 """Relative difference to the reference that sums in another order may make."""
 BY_BIAS = frozenset({"mean", "value", "random points"})
 """The checks that a bias fails."""
-_SUSPICIOUS = 0.05
-"""Share of one realisation in the sum of squares that is worth a warning, where it is twice that of a normal law's largest."""
+_THIRD = 3.0
+"""The tail index below which there is no third moment: skewness then grows with the samples instead of wearing off."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,8 @@ class Judged:
     warning  about heavy tails, "" if there is none
     times_as_many  how many times as many realisations would decide about the mean, as far as can be foreseen; 1 if nothing is open
     calls    how the realisations of a call go together
-    lacks    what an open judgement lacks: "samples", too few of whatever law; "law": samples for so skewed values; "resolution": an
+    lacks    what an open judgement lacks: "samples", too few of whatever law; "law": samples for so skewed values; "tail": a third
+             moment, as far as the largest values tell, so that no number of samples may be enough; "resolution": an
              error as large as the reference would not have been seen; "calls": calls, to tell whether their realisations are
              independent; "range": numbers that binary64 has powers of; "" else
     design_effect  how many times as much the mean varies as that of independent realisations, as far as calls are taken as such
@@ -70,6 +71,11 @@ class Judged:
     def infinite(self) -> bool:
         """Whether the variance may be infinite: then no error that was measured says anything of the next."""
         return "infinite" in self.warning
+
+    @property
+    def rare(self) -> bool:
+        """Whether values too rare to be met may hold more of mean and variance: then no time to an error has an upper end."""
+        return self.infinite or self.lacks in ("samples", "law", "tail")
 
 
 def tests_of(cell: Cell) -> int:
@@ -123,9 +129,9 @@ def judge(cell: Cell, levels: Sequence[Level], variance: Reference | None, alpha
         if data.low < known.low or data.high > known.high:
             told = f"realisations reach from {data.low:.6g} to {data.high:.6g}, declared are {known.low:g} to {known.high:g}"
             findings.append(Finding("bounds", "rejected", told, cause="contract"))
-        findings += _against_theory(levels, variance, alpha, known, value, between)
+        findings += _against_theory(levels, variance, alpha, known, value, error, between)
         findings += [between.finding] if between.finding else []
-        warning = _heavy(levels, data, value)
+        warning = heavy_tail(levels, data, value)
         if warning and variance is None and "infinite" in warning:
             findings[0] = replace(findings[0], outcome="inconclusive", message=f"{findings[0].message}; {warning}")
         elif coarse:
@@ -134,6 +140,9 @@ def judge(cell: Cell, levels: Sequence[Level], variance: Reference | None, alpha
             lacks, times_as_many = "calls", 4.0
         elif mean.outcome == "inconclusive":
             lacks, times_as_many = "samples" if data.n < LEAST else "law", _wanted(data, alpha)
+            index, unsure = tail_of(levels, data, value).outermost()
+            if lacks == "law" and index + unsure < _THIRD:
+                lacks, times_as_many = "tail", 1.0
     if not all(level.complete for level in levels) or len(levels) < len(cell.counts):
         findings.append(Finding("completeness", "inconclusive", "batches are missing"))
     outcomes = [f.outcome for f in findings if f.outcome == "rejected" or f.check != "variance"]
@@ -188,7 +197,8 @@ def inherited(judged: Judged, twin: Judged) -> Judged:
     if twin.wrong and not twin.wrong & BY_BIAS:  # for something else than a bias, which has its own name
         first = next(f for f in twin.findings if f.outcome == "rejected")
         finding = Finding(first.check, "rejected", f"with random points: {first.message}", cause=first.cause)
-    return replace(judged, outcome=twin.outcome, findings=(*judged.findings, finding), times_as_many=twin.times_as_many)
+    findings = (*judged.findings, finding)
+    return replace(judged, outcome=twin.outcome, findings=findings, times_as_many=twin.times_as_many, lacks=twin.lacks)
 
 
 def doubted(judged: Judged, twin: Judged) -> Judged:
@@ -232,15 +242,20 @@ def _against_theory(
     alpha: float,
     known: Known,
     value: float,
+    value_error: float,
     between: BetweenReplicates,
 ) -> list[Finding]:
-    """Return what the exact variance says of the spread of realisations."""
+    """Return what the exact variance says of the spread of realisations about the reference, which may be off itself."""
     if variance is None or not np.isfinite(variance.value):
         return []
     squares = pooled(np.stack([level.squares for level in levels]))
-    exact, error = float(variance.value), float(variance.error)
+    exact = float(variance.value)
+    # (X - r)^2 has expectation V + (mean - r)^2, and rounding moves the root of V by what it moves X by (Minkowski).
+    off = resolution_of(value, value_error)
+    error = float(variance.error) + off * (off + 2 * math.sqrt(max(exact, 0.0)))
     what = "mean squared deviation"
-    found = mean_test("variance", what, squares, exact, error, alpha, "wrong variance", known=_of_squares(known, value))
+    of_squares, doubt = _of_squares(known, value), float(variance.error)
+    found = mean_test("variance", what, squares, exact, error, alpha, "wrong variance", of_squares, uncertain=doubt)
     if "too small" in found.region and two_valued(squares) and not found.distribution_free and not known.bounded:
         message = f"{found.message.partition(';')[0]}; rare values that were not seen may hold the rest"
         found = replace(found, outcome="inconclusive", message=message, p_value=None, cause="", region=())
@@ -257,32 +272,3 @@ def _by_replicates(level: Level, value: float, error: float, alpha: float) -> Fi
     """
     step = float(np.ptp(level.rows[:, 5:7])) / level.count
     return judged_by_replicates("mean", level.rows[:, 1], value, resolution_of(value, error), alpha, step=step)
-
-
-def excess(data: Moments) -> float:
-    """Return the excess kurtosis, 0 where nothing varies."""
-    return data.n * (data.m4 / data.m2) / data.m2 - 3 if data.m2 > 0 else 0.0
-
-
-def _heavy(levels: Sequence[Level], data: Moments, value: float) -> str:
-    largest = _complete(levels)
-    # Hill's estimate takes a thousandth of the sample; where fewer deviations are known, it looks further out.
-    tail = TailEstimate(value, largest, min(data.n, 1000 * (len(largest) - 1)))
-    index, spread = tail.index()
-    if tail.suspect():
-        return f"infinite variance suspected: the tail has index {index:.2g} +- {spread:.1g}, where 2 is the least"
-    if data.largest_share > max(
-        _SUSPICIOUS, 4 * math.log(max(data.n, 2)) / data.n
-    ):  # of n normal ones: about 2 ln(n) / n
-        return f"heavy tail: one realisation of {data.n} has {data.largest_share:.0%} of the variance"
-    return ""
-
-
-def _complete(levels: Sequence[Level]) -> np.ndarray:
-    """Return the largest deviations over all levels that are known whole."""
-    known = [level.tail for level in levels if len(level.tail)]
-    if len(known) < len([level for level in levels if level.count * level.replicates >= 64]):
-        return np.empty(0)
-    together = np.sort(np.concatenate(known)) if known else np.empty(0)
-    least = max((tail[0] for tail in known), default=0.0)
-    return together[together >= least]

@@ -19,13 +19,12 @@ from fogproof.study.error_curve import error_curve, reaches_of, stays_for_good
 from fogproof.study.fixed_work import summed_up
 from fogproof.study.judgement import BY_BIAS, Judged, doubted, inherited, judge, out_of_range, resolution_of
 from fogproof.study.methods.table import kind_of, options_of
-from fogproof.study.reaching import Reach
+from fogproof.study.reaching import TARGETS, Reach
 from fogproof.study.replicate_means import student_quantile
 from fogproof.study.scatter import degrees_of_freedom, kurtosis, spread
 from fogproof.study.speed import Times, times_of
+from fogproof.study.tails import beyond
 
-_COARSE = 0.1
-"""Of the reference: what would not show a smaller bias is called unbiased to so much alone."""
 _LEVEL = 0.2
 """An error of which so much stays for good is on its way to a level, not down a power of the count."""
 
@@ -82,7 +81,7 @@ def measure(
     stays = stays_for_good(cell, judged, bias, floor, levels, data)
     if order is not None and floor is None and stays > _LEVEL * errors[-1].value:
         order = None  # it falls to its bias, and no further
-    curve = error_curve(cell, levels, errors, times, data, variance, judged, stays)
+    curve = error_curve(cell, levels, errors, times, data, variance, judged, stays, bias)
     reaches = () if curve is None else reaches_of(replace(curve, ends=failed > 0), abs(value), error)
     record = {
         "name": cell.name,
@@ -101,7 +100,7 @@ def measure(
         "findings": judged.findings,
         "moments": _moments(data),
         "bias": None if bias is None else asdict(bias),
-        "variance": _variance(cell, data, variance, calls),
+        "variance": _variance(cell, levels, data, variance, calls),
         "order": None if order is None else {**asdict(order), "expected": _expected_order(cell)},
         "floor": None if floor is None else asdict(floor),
         "cost": levels[-1].cost if levels and not math.isnan(levels[-1].cost) else None,
@@ -115,11 +114,11 @@ def measure(
 
 
 def _unbiased_to(m: Measured) -> float | None:
-    """Return the smallest bias that would have been seen, as a share of the reference, where that is coarse; None elsewhere."""
-    if m.status != "passed" or m.cell.points != "random":
+    """Return the relative bias that would have been seen, where that is more than the least error asked for; None elsewhere."""
+    if m.status != "passed":
         return None
     seen = next((f.resolution.relative for f in m.judged.findings if f.check == "mean" and f.resolution), None)
-    return seen if seen is not None and seen >= _COARSE else None
+    return seen if seen is not None and seen > TARGETS[-1] else None
 
 
 def _label(cell: Cell) -> str:
@@ -184,16 +183,18 @@ def _bias(cell: Cell, levels: Sequence[Level], data: Moments, error: float, judg
     return Estimate(off, off - reach - error, off + reach + error)
 
 
-def _variance(cell: Cell, data: Moments, variance: Reference | None, calls: Calls) -> dict[str, Any] | None:
+def _variance(
+    cell: Cell, levels: Sequence[Level], data: Moments, variance: Reference | None, calls: Calls
+) -> dict[str, Any] | None:
     """Return the variance of a realisation; None where realisations are not independent, and no interval is known."""
     if cell.points == "sobol" or data.n < 2 or calls in ("dependent", "stratified"):
         return None
     reach = Z * spread(data)
-    measured = data.variance
+    measured, more = data.variance, beyond(levels, data, float(cell.reference.value))
     return {
         "measured": measured,
         "low": measured * math.exp(-reach),
-        "high": measured * math.exp(reach),
+        "high": math.inf if more == math.inf else measured * math.exp(reach + more),
         "exact": None if variance is None else float(variance.value),
         "exact_error": None if variance is None else float(variance.error),
         "method": None if variance is None else variance.method,
@@ -238,7 +239,7 @@ def _timing(level: Level, times: Times) -> dict[str, Any]:
 
 def _target(reach: Reach) -> dict[str, Any]:
     time = reach.seconds
-    told = {"error": reach.error, "how": reach.how, "why": reach.why, "samples": reach.samples}
+    told = {"error": reach.error, "how": reach.how, "why": reach.why, "samples": reach.samples, "unless": reach.unless}
     if not reach.reached:
         return {**told, "seconds": None, "low": reach.at_least, "high": None}
     return {**told, "seconds": time.value, "low": time.low, "high": time.high}

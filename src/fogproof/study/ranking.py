@@ -36,7 +36,7 @@ def ranked(scene: Sequence[Measured]) -> dict[str, Any]:
     for m in scene:
         speed = m.record["speed"]
         if speed is not None:
-            relative = None if first is None or not m.reaches else _speed(first.reaches[_AT], m.reaches[_AT], sure)
+            relative = None if first is None or not m.reaches else first.reaches[_AT].relative_to(m.reaches[_AT], sure)
             relative = Estimate(1.0, 1.0, 1.0) if m is first else relative
             speed["rank"] = order.index(m) + 1 if m in reaching else None
             speed["relative"] = None if relative is None else asdict(relative)
@@ -52,15 +52,6 @@ def ranked(scene: Sequence[Measured]) -> dict[str, Any]:
     }
 
 
-def _speed(first: Reach, own: Reach, sure: float) -> Estimate | None:
-    """Return the first's time divided by one's own: a mere bound where no more is told of either time."""
-    ratio = first.relative_to(own, sure)
-    if ratio is None:
-        return None
-    low = 0.0 if first.how == "less-than" else ratio.low
-    return Estimate(ratio.value, low, math.inf if own.how == "less-than" else ratio.high)
-
-
 def _of_all_pairs(scene: Sequence[Measured]) -> float:
     """Return the confidence that each pair is compared with, so that all of them hold with `CONFIDENCE`."""
     n = sum(bool(m.reaches) for m in scene)
@@ -69,8 +60,8 @@ def _of_all_pairs(scene: Sequence[Measured]) -> float:
 
 def _key(m: Measured) -> tuple[int, float]:
     if reaches(m, _AT):
-        return 0, m.reaches[_AT].times.estimate.value
-    return 1, m.record["counts"][-1]["rmse"]
+        return int(m.reaches[_AT].unless == "rare"), m.reaches[_AT].times.estimate.value
+    return 2, m.record["counts"][-1]["rmse"]
 
 
 def _to_the_errors(scene: Sequence[Measured], sure: float) -> list[str]:
@@ -155,16 +146,27 @@ def _soonest(found: Sequence[Soonest | None], lead: str) -> list[str]:
             before = first
     text = lead + "; ".join(parts)
     said = [f"{text[:1].upper() + text[1:]}."] if parts else []
-    for waiting, group_of in groupby(untold, key=lambda pair: pair[1].waiting):
+    for _, group_of in groupby(untold, key=lambda pair: (pair[1].waiting, pair[1].unsure)):
         targets = list(group_of)
         errors = _listed([_percent(TARGETS[target]) for target, _ in targets])
         there_now = [
             f"{_percent(TARGETS[target])} {_inside(one.first)} in {_time(one.reach)}" for target, one in targets
         ]
-        late = f"{_listed([_inside(m) for m in waiting])} {'is' if len(waiting) == 1 else 'are'} not there yet"
+        late = _may_be_sooner(targets[0][1])
         asked = f"{lead}who" if lead else "Who"
         said.append(f"{asked} is soonest to {errors} these counts do not tell: {late}. So far: {', '.join(there_now)}.")
     return said
+
+
+def _may_be_sooner(one: Soonest) -> str:
+    """Return why it is open who is soonest: who has not come so near yet, and whose error may be larger than it seems."""
+    late = [m for m in one.waiting if m not in one.unsure]
+    groups = [(late, "not there yet"), (one.unsure, "not sure yet")]
+    return " and ".join(
+        f"{_listed([_inside(m) for m in group])} {'is' if len(group) == 1 else 'are'} {why}"
+        for group, why in groups
+        if group
+    )
 
 
 def _why_not_unbiased(m: Measured) -> str:
@@ -174,7 +176,7 @@ def _why_not_unbiased(m: Measured) -> str:
 
 
 def _compared(scene: Sequence[Measured], sure: float) -> list[str]:
-    """Return how many times as long others take that came out unbiased, to the first target."""
+    """Return how many times as long others take that came out unbiased, to the first target; at least, where no end is known."""
     there = sorted((m for m in scene if m.unbiased and reaches(m, _AT)), key=_key)
     if len(there) < 2:
         return []
@@ -183,13 +185,14 @@ def _compared(scene: Sequence[Measured], sure: float) -> list[str]:
     for other in others:
         ratio = other.reaches[_AT].relative_to(first.reaches[_AT], sure)
         if ratio is not None and ratio.low > 1:
-            most = first.reaches[_AT].how == "less-than"
-            times = _plain(ratio.low if most else ratio.value)
+            endless = ratio.high == math.inf
+            times = _plain(ratio.low if endless else ratio.value)
             if times != "1":
-                said.append(f"{'at least ' if most else ''}{times} times as fast as {_inside(other)}")
+                said.append(f"{'at least ' if endless else ''}{times} times as fast as {_inside(other)}")
     more = len(said) - _SHOWN
     shown = said if more <= 1 else [*said[:_SHOWN], f"more than that of {more} others"]
-    return [f"To {_percent(TARGETS[_AT])} {_inside(first)} is {_listed(shown)}."] if said else []
+    condition = ", if unbiased," if first.reaches[_AT].unless == "bias" else ""
+    return [f"To {_percent(TARGETS[_AT])} {_inside(first)}{condition} is {_listed(shown)}."] if said else []
 
 
 def _marched(m: Measured) -> str:
@@ -204,8 +207,9 @@ def _marched(m: Measured) -> str:
 
 def _time(reach: Reach) -> str:
     time = duration(reach.times.estimate.value)
-    words = {"less-than": f"less than {time}", "extrapolated": f"about {time} (beyond the last count)"}
-    return words.get(reach.how, time)
+    words = {"less-than": f"less than {time}", "extrapolated": f"about {time}"}
+    on = ["beyond the last count"] * (reach.how == "extrapolated") + ["if unbiased"] * (reach.unless == "bias")
+    return words.get(reach.how, time) + (f" ({', '.join(on)})" if on else "")
 
 
 def _plain(ratio: float) -> str:

@@ -3,6 +3,9 @@
 The error of independent samples without bias is known at every count, sqrt(variance / count), and goes on like that; its time
 beyond the last count is told where the counts tell it (`growth`). The error of Sobol points, of marching and of what is biased is
 taken between the counts that were measured, by a power law, and nowhere else.
+
+A bias too small to be seen is part of the error too. Where it may be as large as the error asked for, the time has no upper end;
+nor has it where values too rare to be met may hold more of the variance.
 """
 
 from __future__ import annotations
@@ -15,12 +18,13 @@ from typing import Literal
 import numpy as np
 
 from fogproof.study.convergence import CONFIDENCE, Estimate, Z, deviations
-from fogproof.study.growth import least_beyond, power_at, share_before, time_at, time_beyond
+from fogproof.study.growth import least_beyond, power_at, time_at, time_beyond
 from fogproof.study.speed import Times, scaled
 
 TARGETS = (0.01, 0.001, 0.0001)
 """Relative root mean square errors whose time is told."""
 How = Literal["measured", "less-than", "extrapolated", "not-reached", "rises", "never"]
+Unless = Literal["", "bias", "rare"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +36,8 @@ class ErrorOverTime:
     stays     what no number of samples or steps takes away: a bias that was shown, rounding
     smooth    whether nothing is random: then an error may be small by a lucky crossing, and grow again
     ends      whether more samples were asked for and could not be drawn
+    bias      the largest that there may be, where the law takes it to be 0
+    rare      whether values that were not met may hold more of the error
     times     of one estimate at each
     law       the variance of one realisation with its interval where the error is sqrt(variance / count); None elsewhere
     """
@@ -43,6 +49,8 @@ class ErrorOverTime:
     stays: float = 0.0
     smooth: bool = False
     ends: bool = False
+    bias: float = 0.0
+    rare: bool = False
 
     def nearer(self) -> int | None:
         """Return the largest count that was surely nearer than the last, where the error grows to the last; None elsewhere."""
@@ -67,7 +75,8 @@ class Reach:
     noise    how far the logarithm of the time reaches below and above because of the error's own interval
     least    what is known to be needed in any case: the time of a larger error, or of so many samples
     call     the time of the first count where that is not enough, None elsewhere: no estimate that is takes less
-    share    of the time that is told where the first count is better already: what is needed takes so much of it at least
+    unless   what leaves the time without an upper end: "bias", one that may be as large as the error and was too small to be seen;
+             "rare", values that were not met; "" where nothing does
     """
 
     error: float
@@ -79,7 +88,7 @@ class Reach:
     untimed: bool = False
     least: float = 0.0
     call: Times | None = None
-    share: float = 0.0
+    unless: Unless = ""
 
     @property
     def reached(self) -> bool:
@@ -88,12 +97,12 @@ class Reach:
 
     @property
     def seconds(self) -> Estimate:
-        """The time with its interval, which begins at 0 where the first count is better already."""
+        """The time with its interval, which begins at 0 where the first count is better already, and may have no end."""
         own = self.times.estimate
         time = scaled(own.value, *_wider(own, self.noise))
         least = max(self.least, self.call.estimate.low) if self.call else self.least
         low = 0.0 if self.how == "less-than" else max(time.low, min(least, own.value))
-        return Estimate(own.value, low, time.high)
+        return Estimate(own.value, low, math.inf if self.unless else time.high)
 
     @property
     def at_least(self) -> float:
@@ -106,26 +115,34 @@ class Reach:
         return replace(self, times=larger.times if sooner else self.times, least=max(self.least, larger.at_least))
 
     def relative_to(self, other: Reach, confidence: float = CONFIDENCE) -> Estimate | None:
-        """Return how many times as long it takes as another does; None where either is not known."""
+        """Return how many times as long it takes as another does; None where either is not known.
+
+        Two of which neither may be biased by so much are compared as if neither were.
+        """
         if not (self.reached and other.reached):
             return None
         ratio, more = self.times.relative_to(other.times, confidence), deviations(confidence) / Z
         noise = math.hypot(self.noise[0], other.noise[1]), math.hypot(self.noise[1], other.noise[0])
         below, above = _wider(ratio, (more * noise[0], more * noise[1]))
-        below += self._less()
-        above += other._less()
+        if self.how == "less-than" or other._endless_beside(self):
+            below = math.inf
+        if other.how == "less-than" or self._endless_beside(other):
+            above = math.inf
         found = scaled(ratio.value, below, above)
-        most = found.high if other.call is None else min(found.high, self._most(other.call, confidence))
-        least = found.low if self.call is None else max(found.low, 1 / other._most(self.call, confidence))
-        return Estimate(found.value, min(least, found.value), max(most, found.value))
+        least = max(found.low, 1 / other._most(self, confidence))
+        return Estimate(
+            found.value, min(least, found.value), max(min(found.high, self._most(other, confidence)), found.value)
+        )
 
-    def _less(self) -> float:
-        """Return how far the logarithm of the time reaches below what is told, because fewer samples may do."""
-        return 0.0 if self.how != "less-than" else -math.log(self.share) if self.share > 0 else math.inf
+    def _endless_beside(self, other: Reach) -> bool:
+        """Return whether the time has no upper end when compared with another's."""
+        return self.unless == "rare" or (self.unless == "bias" and other.unless != "bias")
 
-    def _most(self, call: Times, confidence: float) -> float:
-        """Return how many times as long as a call it takes at most."""
-        ratio = self.times.relative_to(call, confidence)
+    def _most(self, other: Reach, confidence: float) -> float:
+        """Return how many times as long as the call of another that is not enough it takes at most: the other takes no less."""
+        if other.call is None or self._endless_beside(other):
+            return math.inf
+        ratio = self.times.relative_to(other.call, confidence)
         _, above = _wider(ratio, (0.0, deviations(confidence) / Z * self.noise[1]))
         return scaled(ratio.value, 0.0, above).high
 
@@ -143,6 +160,7 @@ def reach_of(curve: ErrorOverTime, target: float, error: float, hidden: float = 
     """
     if curve.law is not None:
         return _by_the_law(curve, curve.law, target, error, hidden)
+    unless: Unless = "rare" if curve.rare else ""
     size = np.array([e.value for e in curve.errors])
     how: How
     first = len(size)
@@ -158,15 +176,14 @@ def reach_of(curve: ErrorOverTime, target: float, error: float, hidden: float = 
     if first == 0:
         above = _noise(curve, 0, 1, 0.0)[1] if len(size) > 1 and curve.errors[0].high > target else 0.0
         how = "less-than" if curve.counts[0] > 1 else "measured"  # there is nothing less than one
-        share = share_before(curve.counts, curve.times, 1.0)
-        return Reach(error, how, "", float(curve.counts[0]), curve.times[0], (0.0, above), share=share)
+        return Reach(error, how, "", float(curve.counts[0]), curve.times[0], (0.0, above), unless=unless)
     before, after = size[first - 1], max(size[first], 1e-300)
     share = math.log(before / target) / math.log(before / after)
     at = float(curve.counts[first - 1] * (curve.counts[first] / curve.counts[first - 1]) ** share)
     when = time_at(curve.counts, curve.times, at)
     below, above = _noise(curve, first - 1, first, share)
     noise = math.hypot(below, when.bend[0]), math.hypot(above, when.bend[1])
-    return Reach(error, "measured", "", at, when.times, noise)
+    return Reach(error, "measured", "", at, when.times, noise, unless=unless)
 
 
 def _noise(curve: ErrorOverTime, a: int, b: int, share: float) -> tuple[float, float]:
@@ -190,9 +207,17 @@ def _noise(curve: ErrorOverTime, a: int, b: int, share: float) -> tuple[float, f
 
 def _by_the_law(curve: ErrorOverTime, law: Estimate, target: float, error: float, hidden: float) -> Reach:
     needed, unsure = law.value / target**2, 2 * hidden / target
+    left = 1 - (curve.bias / target) ** 2  # of the square of the error, were there such a bias
+    unless: Unless = "rare" if curve.rare or law.high == math.inf else "bias" if left <= 0 else ""
+    more = (
+        math.inf
+        if unless == "rare"
+        else math.log(law.high / law.value) + unsure - (math.log(left) if left > 0 else 0.0)
+    )
     if needed <= curve.counts[0]:
-        share = share_before(curve.counts, curve.times, max(1.0, law.low / target**2 * math.exp(-unsure)))
-        return Reach(error, "less-than", "", float(curve.counts[0]), curve.times[0], share=share)
+        grows = power_at(curve.counts, curve.times, float(curve.counts[0]))
+        above = grows * max(0.0, math.log(needed / curve.counts[0]) + more) if more < math.inf else math.inf
+        return Reach(error, "less-than", "", float(curve.counts[0]), curve.times[0], (0.0, above), unless=unless)
     beyond = needed > curve.counts[-1]
     if beyond and curve.ends:
         return Reach(error, "not-reached", "larger counts could not be drawn", None, curve.times[-1])
@@ -202,12 +227,12 @@ def _by_the_law(curve: ErrorOverTime, law: Estimate, target: float, error: float
         return Reach(error, "not-reached", at, None, curve.times[-1], untimed=True, least=least)
     grows = power_at(curve.counts, curve.times, needed)
     below = grows * (math.log(law.value / law.low) + unsure) if law.low > 0 else math.inf
-    above = grows * (math.log(law.high / law.value) + unsure)
+    above = grows * more if more < math.inf else math.inf
     noise = math.hypot(below, at.bend[0]), math.hypot(above, at.bend[1])
-    return Reach(error, "extrapolated" if beyond else "measured", "", needed, at.times, noise)
+    return Reach(error, "extrapolated" if beyond else "measured", "", needed, at.times, noise, unless=unless)
 
 
-def variance_law(value: float, spread: float, exact: bool) -> Estimate:
-    """Return a variance with its interval; spread is the standard error of its logarithm."""
+def variance_law(value: float, spread: float, beyond: float, exact: bool) -> Estimate:
+    """Return a variance with its interval; `spread` is the standard error of its logarithm, `beyond` what rare values may add."""
     reach = 0.0 if exact else Z * spread
-    return scaled(value, reach, reach)
+    return scaled(value, reach, reach if exact else reach + beyond)

@@ -148,6 +148,12 @@ def advice(study: Study, measured: Sequence[Measured]) -> str:
             f"Not judged unbiased, all realisations are alike and are not the reference: {_names(alike)}. What has `bounds`, or"
             " a `variance` of 0, is judged: without them, values too rare to be met may make up the difference."
         )
+    heavy = [m for m in waiting if m.judged.lacks == "tail"]
+    if heavy:
+        said.append(
+            f"Not judged unbiased yet, a tail so heavy that no number of samples may be enough: {_names(heavy)}. What has `bounds`"
+            " is judged."
+        )
     beyond = [m for m in waiting if m.judged.lacks == "range"]
     if beyond:
         said.append(

@@ -8,7 +8,6 @@ from fogproof.checks.statistics.moments import Moments
 from fogproof.study.aggregate import Level
 from fogproof.study.between_replicates import Calls
 from fogproof.study.cells import Cell
-from fogproof.study.judgement import excess
 
 
 def kurtosis(cell: Cell, level: Level, data: Moments, calls: Calls = "independent") -> float:
@@ -26,3 +25,8 @@ def degrees_of_freedom(cell: Cell, level: Level, data: Moments, calls: Calls = "
 def spread(data: Moments) -> float:
     """Return the standard error of the logarithm of the variance."""
     return math.sqrt(max(excess(data) + 2, 0.0) / max(data.n, 1))
+
+
+def excess(data: Moments) -> float:
+    """Return the excess kurtosis, 0 where nothing varies."""
+    return data.n * (data.m4 / data.m2) / data.m2 - 3 if data.m2 > 0 else 0.0

@@ -15,13 +15,21 @@ class Soonest:
     """The one that comes to an error in the least time, by `reach`.
 
     beside   those whose time may be as little
-    waiting  those that had not come so near by their last count and may be sooner with more; not what is to be mended first
+    target   index of the error
+    waiting  those that may be sooner: they had not come so near by their last count, and are nothing to be mended first; or values
+             too rare to be met may make their time longer. Of the first itself, where that is so of all
     """
 
     first: Measured
     reach: Reach
     beside: tuple[Measured, ...]
     waiting: tuple[Measured, ...]
+    target: int
+
+    @property
+    def unsure(self) -> tuple[Measured, ...]:
+        """Those of the waiting that come to the error, unless values too rare to be met hold more of it."""
+        return tuple(m for m in self.waiting if _unsure(m, self.target))
 
     def record(self) -> dict[str, Any]:
         """Return it JSON-ready, estimators by their names."""
@@ -29,8 +37,10 @@ class Soonest:
             "name": self.first.cell.name,
             "how": self.reach.how,
             "seconds": self.reach.times.estimate.value,
+            "unless": self.reach.unless,
             "beside": [m.cell.name for m in self.beside],
             "waiting": [m.cell.name for m in self.waiting],
+            "unsure": [m.cell.name for m in self.unsure],
         }
 
 
@@ -44,12 +54,13 @@ def soonest(scene: Sequence[Measured], sure: float) -> list[Soonest | None]:
     found: list[Soonest | None] = []
     for target in range(len(TARGETS)):
         there = [m for m in scene if reaches(m, target)]
-        first = min(there, key=lambda m: m.reaches[target].times.estimate.value, default=None)
+        known = [m for m in there if m.reaches[target].unless != "rare"]
+        first = min(known or there, key=lambda m: m.reaches[target].times.estimate.value, default=None)
         if first is None:
             found.append(None)
         else:
             beside, waiting = _beside(scene, first, target, sure), _may_be_sooner(scene, first, target)
-            found.append(Soonest(first, first.reaches[target], beside, waiting))
+            found.append(Soonest(first, first.reaches[target], beside, waiting, target))
     return found
 
 
@@ -63,13 +74,17 @@ def table(scene: Sequence[Measured], sure: float) -> list[dict[str, Any]]:
 
 
 def _beside(scene: Sequence[Measured], first: Measured, target: int, sure: float) -> tuple[Measured, ...]:
-    there = [
-        (m, m.reaches[target].relative_to(first.reaches[target], sure)) for m in scene if m.reaches and m is not first
-    ]
+    others = [m for m in scene if m.reaches and m is not first and m.reaches[target].unless != "rare"]
+    there = [(m, m.reaches[target].relative_to(first.reaches[target], sure)) for m in others]
     return tuple(m for m, ratio in there if ratio is not None and not ratio.low > 1)
 
 
 def _may_be_sooner(scene: Sequence[Measured], first: Measured, target: int) -> tuple[Measured, ...]:
     least = first.reaches[target].times.estimate.value
-    waiting = [m for m in scene if m.reaches and m.reaches[target].how == "not-reached" and m.waited_for]
-    return tuple(m for m in waiting if m.reaches[target].at_least < least)
+    late = [m for m in scene if m.reaches and (m.reaches[target].how == "not-reached" or _unsure(m, target))]
+    return tuple(m for m in late if m.waited_for and (m is first or m.reaches[target].at_least < least))
+
+
+def _unsure(m: Measured, target: int) -> bool:
+    """Return whether values too rare to be met may make the time longer."""
+    return m.reaches[target].reached and m.reaches[target].unless == "rare"

@@ -46,6 +46,15 @@ class TailEstimate:
         index = 1 / mean if mean > 0 else math.inf
         return index, index / math.sqrt(k)
 
+    def outermost(self) -> tuple[float, float]:
+        """Return the index that the largest numbers go on with, and its error: of the outermost quarter, where that has another.
+
+        A few outliers above a bulk, all alike, have none: (inf, 0).
+        """
+        index, error = self.index()
+        further, more = self.index(4)
+        return (index, error) if 0.5 < further / index < 2 else (further, more if further < math.inf else 0.0)
+
     def suspect(self) -> bool:
         """Whether the variance is infinite as far as the largest deviations tell.
 
