@@ -7,12 +7,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from fogproof.estimators.inversion import inverted
 from fogproof.scene import Ray
 from fogproof.scene.media.gaussian_puffs import GaussianPuffs
 from fogproof.scene.shapes import Shape
 
-STEPS = 100
-"""Most steps of the bracketed Newton iteration; half of them would do if each were a halving."""
+NODES = 513
+"""Of the table from which Newton's method starts."""
 
 
 class PuffData(NamedTuple):
@@ -59,25 +60,23 @@ class Bumps:
         before = ndtr(-self.middle / self.width)
         return (ndtr((np.asarray(t)[..., None] - self.middle) / self.width) - before) @ whole
 
+    def _guess(self, depth: np.ndarray, end: float) -> np.ndarray:
+        """Return about where a depth is reached, from a table of it up to where the last Gaussian ends."""
+        t = np.linspace(0.0, end, NODES)
+        return np.interp(depth, self.depth(t), t)
+
     def reach(self, depth: np.ndarray) -> np.ndarray:
         """Return the distance by Newton's method between brackets that close around it, inf if the depth is never reached."""
         wanted = np.asarray(depth, dtype=float).ravel()
         reached = np.full_like(wanted, np.inf)
-        left = np.flatnonzero(self.depth(np.array(np.inf)) >= wanted)  # those that have not converged yet
+        left = np.flatnonzero(self.depth(np.array(np.inf)) >= wanted)
         end = max(float((self.middle + 40 * self.width).max()), 0.0)
         low, high = np.zeros(len(left)), np.full(len(left), end)
-        t = 0.5 * (low + high)
-        for _ in range(STEPS):
-            off = self.depth(t) - wanted[left]
-            low, high = np.where(off < 0, t, low), np.where(off < 0, high, t)
-            with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-                step = t - off / self.sigma(t)
-            last, t = t, np.where((step >= low) & (step <= high), step, 0.5 * (low + high))
-            reached[left] = t
-            going = np.abs(t - last) > 2e-16 * t
-            if not going.any():
-                break
-            left, t, low, high = left[going], t[going], low[going], high[going]
+
+        def at(t: np.ndarray, which: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            return self.depth(t) - wanted[left[which]], self.sigma(t)
+
+        reached[left] = inverted(at, self._guess(wanted[left], end), low, high)
         return reached.reshape(np.shape(depth))
 
 

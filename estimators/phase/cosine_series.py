@@ -13,15 +13,11 @@ from functools import cached_property
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from fogproof.estimators.inversion import inverted
 from fogproof.estimators.phase.polar import Polar
-
-MOST_STEPS = 64
 
 FEWEST_CELLS = 4096
 """Of the grid of angles from which Newton's method starts: three steps are then enough."""
-
-LAST, EPS = 1e-9, 4e-16
-"""Steps of Newton's method: below the first the next is the last one that counts, below the second nothing changes."""
 
 TERMS = 16
 """Of each polynomial in `CosinePieces`: over an angle pi/m, cos(m theta) is one of fifteenth degree but for J_16(pi/2) < 1e-15."""
@@ -105,26 +101,15 @@ class CosineSeries:
         theta, share = self._grid
         target = xi.astype(np.float64)
         cell = np.clip(np.searchsorted(share, target, side="right"), 1, len(share) - 1)
-        high, low = theta[cell - 1].copy(), theta[cell].copy()
+        high, low = theta[cell - 1], theta[cell]
         inside = (target - share[cell - 1]) / np.maximum(share[cell] - share[cell - 1], 1e-300)
         at = high - (high - low) * np.clip(inside, 0, 1)
-        left, before = np.arange(len(target)), np.full_like(target, np.inf)
-        for _ in range(MOST_STEPS):
-            t = at[left]
-            off = self._share(t) - target[left]
-            high[left], low[left] = np.where(off < 0, t, high[left]), np.where(off < 0, low[left], t)
+
+        def beyond(t: np.ndarray, which: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
             slope = 2 * np.pi * np.sin(t) * np.maximum(self._value(t), 1e-300)
-            with np.errstate(divide="ignore", over="ignore"):
-                step = t + off / np.maximum(slope, 1e-300)
-            step = np.where((step >= low[left]) & (step <= high[left]), step, 0.5 * (low[left] + high[left]))
-            at[left] = step
-            moved = np.abs(step - t) / np.pi
-            more = (moved > LAST) | (
-                (moved > EPS) & (moved < before / 2)
-            )  # where rounding decides, steps no longer shrink
-            left, before = left[more], moved[more]
-            if len(left) == 0:
-                break
+            return target[which] - self._share(t), np.maximum(slope, 1e-300)
+
+        at = inverted(beyond, at, low, high, unit=np.pi)
         versine, coversine = 2 * np.sin(at / 2) ** 2, 2 * np.cos(at / 2) ** 2
         return Polar(
             versine.astype(xi.dtype), coversine.astype(xi.dtype), self.density(versine, coversine).astype(xi.dtype)

@@ -17,6 +17,7 @@ from functools import lru_cache
 import numpy as np
 from scipy.special import expit
 
+from fogproof.estimators.inversion import inverted
 from fogproof.estimators.phase.polar import Polar
 from fogproof.scene.phase import FournierForand
 
@@ -24,9 +25,6 @@ SERIES, TERMS = 0.35, 36
 """|1 - delta| up to which the series is summed, and its length: 0.35^36 < 1e-16."""
 
 SMALLEST = 1e-300
-MOST_STEPS = 100
-LAST, EPS = 1e-9, 2.3e-16
-"""Relative steps of Newton's method: below the first the next is the last one that counts, below the second nothing changes."""
 FARTHEST, DENSE, NODES = 690.0, 50.0, 512
 """Of log(s/(1 - s)) in a table: the largest, where nodes begin to lie closer, and how many there are in a quarter of it."""
 
@@ -129,22 +127,12 @@ def _table(phase: FournierForand, share: Share) -> tuple[np.ndarray, np.ndarray]
 
 
 def _root(phase: FournierForand, share: Share, target: np.ndarray) -> np.ndarray:
-    """Return x = log(s/(1 - s)) in [-FARTHEST, FARTHEST] at which a share is the target: Newton's method, kept between bounds."""
+    """Return x = log(s/(1 - s)) in [-FARTHEST, FARTHEST] at which a share is the target."""
     sign = 1.0 if share is _within else -1.0
-    x = np.interp(np.log(target), *_table(phase, share))
-    low, high = np.full_like(x, -FARTHEST), np.full_like(x, FARTHEST)
-    left, before = np.arange(len(x)), np.full_like(x, np.inf)
-    for _ in range(MOST_STEPS):
-        at = x[left]
-        s, rest = expit(at), expit(-at)
-        off = sign * (share(phase, s, rest) - target[left])
-        low[left], high[left] = np.where(off < 0, at, low[left]), np.where(off < 0, high[left], at)
-        step = at - off / (4 * np.pi * s * rest * density(phase, 2 * s, 2 * rest))
-        step = np.where((step >= low[left]) & (step <= high[left]), step, 0.5 * (low[left] + high[left]))
-        x[left] = step
-        moved = np.abs(step - at) / np.maximum(np.abs(at), 1.0)
-        more = (moved > LAST) | ((moved > EPS) & (moved < before / 2))  # where rounding decides, steps no longer shrink
-        left, before = left[more], moved[more]
-        if len(left) == 0:
-            break
-    return x
+
+    def at(x: np.ndarray, which: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        s, rest = expit(x), expit(-x)
+        return sign * (share(phase, s, rest) - target[which]), 4 * np.pi * s * rest * density(phase, 2 * s, 2 * rest)
+
+    start = np.interp(np.log(target), *_table(phase, share))
+    return inverted(at, start, np.full_like(start, -FARTHEST), np.full_like(start, FARTHEST), unit=1.0)

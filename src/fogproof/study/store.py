@@ -75,6 +75,8 @@ def opened(folder: Path, study: Study, salvage: bool = False) -> Iterator[Store]
                 store.close()
             if not salvage:
                 raise
+            store = None
+        if store is None:  # not before what was raised is gone: a cursor in its traceback keeps the damaged file locked
             store = _salvaged(path, study)
         yield store
     finally:
