@@ -29,7 +29,7 @@ def test_steps_that_rounding_makes_end_it():
 
     def noisy(t, which):
         calls.append(len(t))
-        return np.round(t**3 - target[which], 12) + 1e-13, 3 * t * t
+        return t**3 - target[which] + 1e-12 * np.sin(1e16 * t), 3 * t * t
 
     found = inverted(noisy, target.copy(), np.zeros(50), np.full(50, 3.0))
     assert np.max(np.abs(found - np.cbrt(target))) < 1e-12
