@@ -9,8 +9,8 @@ import numpy as np
 MOST_STEPS = 100
 """Half of them would do if each were a halving."""
 
-LAST, SAME = 1e-9, 2.3e-16
-"""Relative steps: below the first the next one is the last that counts, below the second nothing changes."""
+SAME = 2.3e-16
+"""A relative step below which nothing changes."""
 
 
 def inverted(
@@ -27,7 +27,7 @@ def inverted(
     unit   steps are relative to |t|, or to this where that is smaller
     """
     t, low, high = start.copy(), low.copy(), high.copy()
-    left, before = np.arange(len(t)), np.full(len(t), np.inf)
+    left = np.arange(len(t))
     for _ in range(MOST_STEPS):
         if len(left) == 0:
             break
