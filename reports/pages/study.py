@@ -51,6 +51,11 @@ class SceneShown:
         return any(row.all for row in self.scene.answer.soonest)
 
     @property
+    def any_unbiased(self) -> bool:
+        """Whether any came out unbiased."""
+        return any(row.entry.status == "passed" for row in self.rows)
+
+    @property
     def biased(self) -> list[StudyEntry]:
         """Those that are soonest to some error and are not unbiased, or not known to be."""
         first = {row.all.name for row in self.scene.answer.soonest if row.all}

@@ -313,3 +313,18 @@ def test_a_stop_says_what_it_waits_for_and_a_second_one_ends_it(tmp_path):
 
 def heard():
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
+
+
+def test_a_program_without_a_guard_is_told_of_it_and_the_estimator_is_not_blamed(tmp_path):
+    path = study_file(tmp_path / "s", [{"kind": "my_module:Analog"}])
+    program = tmp_path / "program.py"
+    lines = [
+        "from fogproof.study import read_study, run_study",
+        "{}run_study(read_study({!r}), {!r}, executor='processes')",
+    ]
+    for guard in ("", 'if __name__ == "__main__": '):
+        program.write_text("\n".join(lines).format(guard, str(path), str(tmp_path / "run")))
+        done = subprocess.run([sys.executable, str(program)], capture_output=True, text=True, timeout=120)
+        assert (done.returncode == 0) == bool(guard), done.stderr
+        assert ('let what it runs stand under `if __name__ == "__main__":`' in done.stderr) != bool(guard)
+        assert "the subject ended" not in done.stderr

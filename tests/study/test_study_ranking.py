@@ -25,6 +25,7 @@ class Timed:
     seconds: np.ndarray
     status: str = "passed"
     failed: int = 0
+    unfinished: bool = False
     record: dict[str, Any] = field(init=False)
 
     def __post_init__(self):
@@ -155,6 +156,18 @@ def test_what_is_to_be_mended_first_keeps_no_answer_open():
 )
 def test_more_samples_are_asked_for_where_they_can_help(scene, end):
     assert ranked(scene)["notes"][0] == f"None comes within 1 %{end}"
+
+
+def test_an_interrupted_study_is_to_be_finished():
+    """Other counts would not help: those that there are have not been drawn."""
+    assert ranked([not_there("a", unfinished=True)])["notes"][0].endswith(
+        "a comes nearest with 4096. Let the study finish."
+    )
+    late = not_there("a", unfinished=True)
+    late.reaches = tuple(replace(reach, untimed=True) for reach in late.reaches)
+    assert (
+        "Of a what more samples would take these counts do not tell: let the study finish." in ranked([late])["notes"]
+    )
 
 
 def test_those_that_are_not_named_are_counted():

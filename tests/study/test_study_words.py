@@ -5,9 +5,10 @@ import textwrap
 import pytest
 from study_fixtures import RAY, toml
 
-from fogproof.errors import FogproofError
+from fogproof.errors import FogproofError, UnsupportedError
 from fogproof.reports import read_record, write_report
 from fogproof.study import read_study, run_study
+from fogproof.study.methods import transmittance
 
 MINE = """
     import numpy as np
@@ -229,3 +230,83 @@ def test_a_study_that_cannot_run_leaves_nothing_that_the_mended_one_does_not_fit
         run_study(read_study(path), tmp_path / "run")
     path.write_text(text)
     run_study(read_study(path), tmp_path / "run")
+
+
+TWINS = """
+    import numpy as np
+
+    class One:
+        title = "Alpha"
+
+        def __init__(self, scene):
+            self.mean = float(np.exp(-float(scene.built_medium.sigma_t) * float(scene.ray.length)))
+
+        def draw(self, rng, n):
+            return self.mean + 0.1 * rng.normal(size=n)
+
+    class Other(One):
+        title, bias = "Alpha", "by design"
+"""
+
+
+def test_estimators_of_one_title_are_told_apart_by_their_kinds(tmp_path):
+    path = written(tmp_path, ("One", "Other"))
+    (tmp_path / "spoken.py").write_text(textwrap.dedent(TWINS))
+    record = run_study(read_study(path), tmp_path / "run")
+    labels = [e["label"] for e in record["scenes"][0]["estimators"]]
+    assert labels == ["Alpha (spoken:One)", "Alpha (spoken:Other)"]
+
+
+def test_where_none_is_unbiased_that_is_said_once(tmp_path):
+    """More counts would not help: nobody is waited for."""
+    record = run_study(read_study(written(tmp_path, ("DeclaredAndUnseen", "Falling"))), tmp_path / "run")
+    assert "None is judged unbiased." in record["scenes"][0]["answer"]["text"].split("\n")
+    write_report(read_record(tmp_path / "run"), tmp_path / "run", keep=True)
+    page = (tmp_path / "run" / "index.html").read_text()
+    assert "<p>None is judged unbiased.</p>" in page
+    assert "Of the unbiased</caption>" not in page
+
+
+@pytest.mark.parametrize("count", [64, 1024])
+def test_hits_that_never_missed_are_judged_by_their_bounds(tmp_path, count):
+    """A transmittance of 1 - 2e-9: no miss is met, and the law of hits and misses tells how much it can matter."""
+    path = written(tmp_path, ("Plain",), samples=[count])
+    scene = {
+        "name": "thin",
+        "quantity": "transmittance",
+        "medium": {"sigma_a": 1e-9, "sigma_s": 1e-9},
+        "ray": {**RAY, "length": 1},
+    }
+    path.write_text(
+        toml({"samples": [count], "replicates": 16, "scenes": [{**scene, "estimators": ["analog", "delta"]}]})
+    )
+    record = run_study(read_study(path), tmp_path / "run")
+    assert {e["status"] for e in record["scenes"][0]["estimators"]} == {"passed"}
+    assert record["advice"] == ""
+
+
+def test_a_method_of_which_the_oracle_knows_no_variance_is_told_before_it_is_drawn(tmp_path, monkeypatch):
+    """With the scene and the estimator, and no folder that the mended study would not fit into."""
+    path = written(tmp_path, ("Plain",))
+    path.write_text(path.read_text().replace("spoken:Plain", "ratio"))
+
+    def refuses(*_):
+        raise UnsupportedError("no such variance", "variance")
+
+    monkeypatch.setattr(transmittance, "transmittance_variance", refuses)
+    with pytest.raises(FogproofError, match="scene 'fog', ratio: no such variance"):
+        run_study(read_study(path), tmp_path / "run")
+    assert not (tmp_path / "run").exists()
+
+
+def test_nothing_to_collide_with_has_no_variance(tmp_path):
+    path = written(tmp_path, ("Plain",), samples=[64])
+    text = (
+        path.read_text()
+        .replace("spoken:Plain", "ratio")
+        .replace("sigma_a = 0.2", "sigma_a = 0")
+        .replace("sigma_s = 0.3", "sigma_s = 0")
+    )
+    path.write_text(text)
+    record = run_study(read_study(path), tmp_path / "run")
+    assert record["scenes"][0]["estimators"][0]["status"] == "passed"

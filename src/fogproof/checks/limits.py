@@ -12,6 +12,7 @@ import signal
 import sys
 import time
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any, TypeVar
 
 from fogproof import servers
@@ -129,11 +130,23 @@ class IsolatedProcess:
     def _without_a_word(self) -> str:
         self._process.join()
         code = self._process.exitcode
-        return _KILLED if code < 0 else _ended(code)
+        return _unguarded() or (_KILLED if code < 0 else _ended(code))
 
 
 def _ended(code: int) -> str:
     return _CLOSED if code == CLOSED else f"the subject ended the process, exit code {code}"
+
+
+def _unguarded() -> str:
+    """Return why a process ended before it called anything, "" if the program may be read again without harm."""
+    main = getattr(sys.modules.get("__main__"), "__file__", None) or ""
+    try:
+        guarded = "__name__" in Path(main).read_text(encoding="utf-8")
+    except (OSError, ValueError):
+        return ""
+    program, fix = Path(main).name, 'let what it runs stand under `if __name__ == "__main__":`'
+    what = f"the process ended before it began: it reads {program} again, which must start no processes then; {fix}"
+    return "" if guarded else what
 
 
 def fresh_process(preload: Sequence[str], work: Callable[..., None], *arguments: Any) -> IsolatedProcess:

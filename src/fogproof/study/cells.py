@@ -135,7 +135,7 @@ def cells_of(study: Study) -> list[Cell]:
 
 
 def prepare(cells: list[Cell], tried: bool = False) -> None:
-    """Ask the oracle and call every estimator once: what cannot run says so before anything runs.
+    """Ask the oracle, also of what it knows of each estimator, and call each once: what cannot run says so before anything runs.
 
     tried  whether one's own have been called elsewhere (`trial`), and are not called here
     """
@@ -144,6 +144,7 @@ def prepare(cells: list[Cell], tried: bool = False) -> None:
             _ = cell.reference
             if not (tried and isinstance(cell.method, Own)):
                 cell.estimator(cell.counts[0])
+                _ = cell.method.variance(cell.scene), cell.method.bounds(cell.scene)
         except FogproofError as error:
             raise told_of(cell.study, cell.scene, cell.name, error) from None
 

@@ -21,7 +21,7 @@ from fogproof.study.judgement import BY_BIAS, Judged, doubted, inherited, judge,
 from fogproof.study.methods.table import kind_of, options_of
 from fogproof.study.reaching import TARGETS, Reach
 from fogproof.study.replicate_means import student_quantile
-from fogproof.study.scatter import degrees_of_freedom, kurtosis, spread
+from fogproof.study.scatter import freedom_of_errors, kurtosis, spread
 from fogproof.study.speed import Times, times_of
 from fogproof.study.tails import beyond
 
@@ -55,6 +55,11 @@ class Measured:
     def unbiased(self) -> bool:
         """Whether it came out unbiased as far as could be seen, and does not say otherwise."""
         return self.status == "passed"
+
+    @property
+    def unfinished(self) -> bool:
+        """Whether something of it has not been drawn yet."""
+        return not self.failed and any(f.check == "completeness" for f in self.judged.findings)
 
     @property
     def waited_for(self) -> bool:
@@ -122,10 +127,12 @@ def _unbiased_to(m: Measured) -> float | None:
 
 
 def _label(cell: Cell) -> str:
-    """Return the title, with the options where the scene has the same method twice."""
+    """Return the title; where the scene has it more than once, with the kind of a method and the options that tell it apart."""
     alike = [method for method in cell.scene.estimators if method.title == cell.method.title]
-    options = ", ".join(f"{key} {value}" for key, value in options_of(cell.method).items())
-    label = f"{cell.method.title} ({options})" if len(alike) > 1 and options else cell.method.title
+    kinds = {kind_of(method) for method in alike}
+    more = [kind_of(cell.method)] if len(kinds) > 1 else []
+    more += [f"{key} {value}" for key, value in options_of(cell.method).items()] if len(alike) > 1 else []
+    label = f"{cell.method.title} ({', '.join(more)})" if more else cell.method.title
     return f"{label} with Sobol points" if cell.points == "sobol" else label
 
 
@@ -158,7 +165,7 @@ def _fall(
     size = np.array([e.value for e in errors])
     steps = cell.method.axis == "steps"
     hidden = np.array([resolution_of(value, error, level.count if steps else 1) for level in levels])
-    freedom = np.array([math.inf if steps else degrees_of_freedom(cell, level, data, calls) for level in levels])
+    freedom = np.array([math.inf if steps else freedom_of_errors(cell, level, data, calls) for level in levels])
     return order_of(counts, size, freedom, hidden), floor_of(counts, size, hidden) if steps else None
 
 

@@ -71,7 +71,8 @@ def _to_the_errors(scene: Sequence[Measured], sure: float) -> list[str]:
     said = _soonest(soonest(scene, sure), "")
     if biased:
         said += [f"{_first(m)} {_why_not_unbiased(m)}." for m in biased]
-        said += _soonest(soonest([m for m in scene if m.unbiased], sure), "Of the unbiased, ")
+        unbiased = [m for m in scene if m.unbiased]
+        said += _soonest(soonest(unbiased, sure), "Of the unbiased, ") if unbiased else ["None is judged unbiased."]
     return said
 
 
@@ -98,8 +99,8 @@ def _notes(scene: Sequence[Measured], sure: float) -> list[str]:
     late = [m for m in scene if m.reaches and m.reaches[_AT].untimed and m.waited_for]
     untimed = [_inside(m) for m in late if m in waiting or at[0] is None]
     if untimed:
-        more = "what more samples would take these counts do not tell: add a larger one to `samples`"
-        said.append(f"Of {_listed(untimed)} {more}.")
+        fix = "let the study finish" if any(m.unfinished for m in late) else "add a larger one to `samples`"
+        said.append(f"Of {_listed(untimed)} what more samples would take these counts do not tell: {fix}.")
     biased = [m for m in firsts if not m.unbiased]
     open_ = [_inside(m) for m in scene if m.status == "inconclusive" and m.cell.points == "random" and m not in biased]
     if open_:
@@ -123,6 +124,8 @@ def _none_comes(scene: Sequence[Measured]) -> str:
     told = f"None comes within {_percent(TARGETS[_AT])}; {_inside(nearest)} comes nearest with {count}."
     if not coming:
         return told
+    if any(m.unfinished for m in scene):
+        return f"{told} Let the study finish."
     return f"{told} Raise `samples`{'' if len(coming) == len(scene) else f' for {_listed(coming)}'}."
 
 

@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from fogproof.checks.statistics.moments import Moments
 from fogproof.study.aggregate import Level
 from fogproof.study.between_replicates import Calls
 from fogproof.study.cells import Cell
+
+ALIKE = 5e4
+"""Degrees of freedom of what does not scatter: a power law is told of it where it keeps to that within half a per cent."""
 
 
 def kurtosis(cell: Cell, level: Level, data: Moments, calls: Calls = "independent") -> float:
@@ -20,6 +25,23 @@ def kurtosis(cell: Cell, level: Level, data: Moments, calls: Calls = "independen
 def degrees_of_freedom(cell: Cell, level: Level, data: Moments, calls: Calls = "independent") -> float:
     """Return the degrees of freedom of a level's mean square."""
     return len(level.rows) / (1 + max(kurtosis(cell, level, data, calls), 0.0) / 2)
+
+
+def freedom_of_errors(cell: Cell, level: Level, data: Moments, calls: Calls = "independent") -> float:
+    """Return the degrees of freedom of a level's mean square error, a bias included, which makes it scatter less.
+
+    Of a chi-square law with the mean and the variance of the mean of squares (b + s z)^2 (Satterthwaite 1946); what has no scatter
+    at all has `ALIKE`.
+    """
+    off = level.rows[:, 1] - float(cell.reference.value)
+    own, n = degrees_of_freedom(cell, level, data, calls), len(off)
+    noise = float(np.var(off, ddof=1)) if n > 1 else math.nan
+    bias = max(float(off.mean()) ** 2 - noise / n, 0.0)
+    if not (own > 0 and noise + bias > 0):
+        return own
+    share = noise / (noise + bias)
+    varies = share**2 / own + 2 * share * (1 - share) / n
+    return min(1 / varies, ALIKE) if varies > 0 else ALIKE
 
 
 def spread(data: Moments) -> float:

@@ -9,6 +9,7 @@ import numpy as np
 from fogproof.analytic import ambient_fog_variance
 from fogproof.contracts import Estimator, Reference
 from fogproof.estimators import AnalogFog, CertainCollisionFog
+from fogproof.estimators.free_paths.fog import source_per_collision
 from fogproof.study.methods.method import Method
 from fogproof.study.question import Question
 
@@ -28,6 +29,12 @@ class AnalogFogMethod(Method):
     def variance(self, scene: Question) -> Reference | None:
         """Return that of two values."""
         return ambient_fog_variance(scene.built_medium, scene.ray, scene.ambient, scene.background)
+
+    def bounds(self, scene: Question) -> tuple[float, float] | None:
+        """Return the source and the background, one of which each path sees; None where they are the same."""
+        source = source_per_collision(scene.built_medium, scene.ambient)
+        low, high = sorted((source, float(scene.background)))
+        return (low, high) if low < high else None
 
 
 @dataclass(frozen=True)

@@ -76,6 +76,10 @@ class Analog(Method):
         """Return T (1 - T)."""
         return transmittance_variance(scene.built_medium, scene.ray, "delta")
 
+    def bounds(self, scene: Question) -> tuple[float, float]:
+        """Return 0 and 1."""
+        return 0.0, 1.0
+
 
 @dataclass(frozen=True)
 class Delta(Method):
@@ -93,6 +97,10 @@ class Delta(Method):
         """Return T (1 - T), whatever the majorant."""
         return transmittance_variance(scene.built_medium, scene.ray, "delta")
 
+    def bounds(self, scene: Question) -> tuple[float, float]:
+        """Return 0 and 1."""
+        return 0.0, 1.0
+
 
 @dataclass(frozen=True)
 class Ratio(Method):
@@ -109,6 +117,8 @@ class Ratio(Method):
     def variance(self, scene: Question) -> Reference | None:
         """Return T^2 (exp(integral of sigma_t^2 / majorant) - 1)."""
         majorant = self.majorant or _bounds(scene)[1]
+        if majorant == 0:  # nothing there to collide with
+            return NO_VARIANCE
         return transmittance_variance(scene.built_medium, scene.ray, "ratio", majorant)
 
     def bounds(self, scene: Question) -> tuple[float, float]:
