@@ -10,7 +10,7 @@ MOST_STEPS = 100
 """Half of them would do if each were a halving."""
 
 LAST, SAME = 1e-9, 2.3e-16
-"""Relative steps: below the first the next one is the last that counts, below the second nothing changes."""
+"""Relative steps: one below the first ends it unless it shrinks as Newton's do, one below the second always."""
 
 
 def inverted(
@@ -36,11 +36,11 @@ def inverted(
         low[left], high[left] = np.where(off < 0, now, low[left]), np.where(off < 0, high[left], now)
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             step = now - off / slope
+        # A step back to a bound is one: halving would leave a root that rounding has met.
         step = np.where((step >= low[left]) & (step <= high[left]), step, 0.5 * (low[left] + high[left]))
         t[left] = step
         moved = np.abs(step - now) / np.maximum(np.maximum(np.abs(now), unit), np.finfo(float).tiny)
-        more = (moved > LAST) | (
-            (moved > SAME) & (moved < 0.75 * before)
-        )  # where rounding decides, steps no longer shrink
+        shrinks = moved < 0.75 * before  # where rounding decides, steps no longer do
+        more = (moved > LAST) | ((moved > SAME) & shrinks)
         left, before = left[more], moved[more]
     return t
