@@ -6,8 +6,10 @@ import pytest
 from fuzz_commands import Run, here
 
 from fogproof.errors import InvalidInputError
+from fogproof.reports.files import locked
 from fogproof.verify import select
 from fogproof.verify.elsewhere import LEAST, Elsewhere
+from fogproof.workers import executors
 
 CASES = """
 import numpy as np
@@ -88,3 +90,34 @@ def test_an_executor_that_there_is_not(mine):
     end = here(Run(["verify", "mine.py", "--executor", "proc", "--keep", "kept"]))
     assert (end.code, b"must be threads, processes or dask://host:port" in end.err) == (2, True)
     assert not (mine / "kept").exists()
+
+
+@pytest.mark.parametrize("where", ["dask://", "dask://host", "dask://:1"])
+def test_a_cluster_without_an_address(mine, where):
+    end = here(Run(["verify", "mine.py", "--executor", where]))
+    assert (end.code, b"must be threads, processes or dask://host:port" in end.err) == (2, True)
+
+
+def test_a_cluster_that_does_not_answer_is_told_before_anything_is_drawn(mine, monkeypatch):
+    pytest.importorskip("distributed")
+    monkeypatch.setattr(executors, "PATIENCE", 0.5)
+    end = here(Run(["verify", "mine.py", "--executor", "dask://127.0.0.1:9"]))
+    assert (end.code, b"no Dask scheduler answers" in end.err, b"not rejected" in end.out) == (2, True, False)
+
+
+@pytest.mark.parametrize("content", ["", "{}", '{"schema": "fogproof tally 1"}'])
+def test_kept_samples_that_are_damaged_are_told_before_anything_is_drawn(mine, content):
+    (case,) = select(["mine.py::large"])
+    path = Elsewhere("threads", 1, "kept")._file(case.name)
+    path.parent.mkdir()
+    path.write_text(content)
+    end = here(Run(["verify", "mine.py", "--keep", "kept"]))
+    assert (end.code, b"remove it, and all is drawn anew" in end.err, b"not rejected" in end.out) == (2, True, False)
+    assert path.read_text() == content
+
+
+def test_two_runs_do_not_keep_samples_in_one_folder(mine):
+    (mine / "kept").mkdir()
+    with locked(mine / "kept"):
+        end = here(Run(["verify", "mine.py::small", "--keep", "kept"]))
+    assert (end.code, b"another run of fogproof writes into kept" in end.err) == (2, True)
