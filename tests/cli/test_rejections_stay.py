@@ -40,13 +40,13 @@ SCENE = {
     "quantity": "transmittance",
     "medium": {"sigma_a": 0.05, "sigma_s": 0.05},
     "ray": RAY,
-    "estimators": [{"kind": "mine:Biased"}],
+    "estimators": [{"kind": "half_wrong:Biased"}],
 }
 
 
 @pytest.fixture
 def mine(tmp_path, monkeypatch):
-    (tmp_path / "mine.py").write_text(CASES)
+    (tmp_path / "half_wrong.py").write_text(CASES)
     study = {"samples": [100, 1000], "replicates": 8, "batch": 1000, "sobol": False, "scenes": [SCENE]}
     (tmp_path / "study.toml").write_text(toml(study))
     monkeypatch.chdir(tmp_path)
@@ -60,9 +60,9 @@ def full(*arguments, **options):
 @pytest.mark.parametrize(("which", "code"), [("wrong", 1), ("right", 2)])
 def test_verify(mine, monkeypatch, which, code):
     monkeypatch.setattr(reports, "write_report", full)
-    end = here(Run(["verify", f"mine.py::{which}", "--report", "r"]))
+    end = here(Run(["verify", f"half_wrong.py::{which}", "--report", "r"]))
     assert (end.code, b"No space left on device" in end.err) == (code, True)
-    assert f"mine/{which}  {'rejected' if which == 'wrong' else 'not rejected'}".encode() in end.out
+    assert f"half_wrong/{which}  {'rejected' if which == 'wrong' else 'not rejected'}".encode() in end.out
 
 
 @pytest.mark.parametrize("step", ["results", "page"])
@@ -77,7 +77,7 @@ def test_study(mine, monkeypatch, step):
 def test_a_record_of_hard_regions_that_cannot_be_read_is_left_out(mine, content):
     Path("r").mkdir()
     Path("r/stability.json").write_text(content)
-    end = here(Run(["verify", "mine.py", "--report", "r"]))
+    end = here(Run(["verify", "half_wrong.py", "--report", "r"]))
     assert end.code == 1
     page = Path("r/index.html").read_text()
     assert "Not shown: " in page
