@@ -12,6 +12,7 @@ from fogproof.reports.charts.colours import EXPECTED, FIFTH, FOURTH, GRID, INK, 
 from fogproof.reports.charts.direct_labels import EndLabel, height_of, write_labels
 from fogproof.reports.charts.scale import Scale, spanning
 from fogproof.reports.charts.sheet import FONT_SIZE, Sheet
+from fogproof.reports.charts.sheet_png import text_width
 from fogproof.reports.text import label
 
 _COLOURS = (OBSERVED, EXPECTED, THIRD, FOURTH, FIFTH, SIXTH)
@@ -19,6 +20,8 @@ _MARKERS: tuple[Marker, ...] = ("dot", "square", "triangle", "diamond", "cross")
 _DOTTED = (2.0, 3.0)
 _LOWEST = 3e-6
 """Relative errors below are nobody's question, and would flatten all others; their curves leave the picture."""
+_LEAST = 10.0
+"""The factor that errors span in a picture at least."""
 _DEPTH = 1e3
 """How far below the largest error a picture shows in any case."""
 _LETTERS = 28
@@ -64,11 +67,12 @@ class Convergence:
 
     HOW: ClassVar[str] = (
         "Lower is better, and further left is sooner. Choose the error you can live with on the left, follow it to "
-        "the right: the curve met first is the estimator to take. A curve of half the slope needs a hundred times the "
+        "the right: the curve met first is the estimator to take. A curve of slope one half needs a hundred times the "
         "samples for a tenth of the error. The band around a curve holds the truth; where bands overlap, the data do "
         "not tell. Dashed: Sobol points, or steps of a march in place of random samples. Dotted: what the oracle "
-        "predicts. A curve that becomes level has a bias, and no time takes it away. Of many curves the few with the least "
-        "squared error times effort at their end are named, all others grey."
+        "predicts. A curve that becomes level has a bias, which no time takes away, or is at rounding; one that jumps has "
+        "a heavy tail. Of many curves the few with the least squared error times effort at their end are named, all "
+        "others grey."
     )
 
     @property
@@ -87,16 +91,18 @@ class Convergence:
         """Draw each curve with its confidence band and name, the oracle's prediction dotted, and a line of the expected slope."""
         across = spanning(np.concatenate([np.array(c.effort) for c in self.curves]), log=True)
         every = np.concatenate([np.array(c.error) for c in self.curves])
-        up = spanning(np.maximum(every, min(_LOWEST, every.max() / _DEPTH)), log=True, margin=0.08)
+        up = _room(spanning(np.maximum(every, min(_LOWEST, every.max() / _DEPTH)), log=True, margin=0.08))
         right, bottom = sheet.width - _SIDE, sheet.height - 50
-        axes = Axes(sheet, (84, 10, right - 84, bottom - 10), across, up)
+        left = max(84.0, 38 + max((text_width(name, FONT_SIZE) for _, name in up.ticks(5)), default=0))
+        axes = Axes(sheet, (left, 10, right - left, bottom - 10), across, up)
         axes.frame(self.across, self.up)
         named = self._named()
         for curve in self.curves:
             if curve not in named:
                 axes.line(curve.effort, curve.error, GRID, DASHED if curve.dashed else None, 1.5)
         for curve in named:
-            axes.band(curve.effort, np.maximum(curve.low, up.low), curve.high, _look(curve.look)[0], 0.12)
+            opacity = 0.12 * min(1.0, 3 / len(named))  # bands that lie on each other add up
+            axes.band(curve.effort, np.maximum(curve.low, up.low), curve.high, _look(curve.look)[0], opacity)
         for curve in named:
             colour, marker = _look(curve.look)
             axes.line(curve.effort, curve.predicted, colour, _DOTTED)
@@ -127,6 +133,12 @@ class Convergence:
             f"Error over {where} of {n} estimator{'' if n == 1 else 's'}, both logarithmic, with {self.confidence:.0%} confidence"
             f" bands. The lowest at its end is {lowest_at}.{grey}{guide}{below}{missing if self.errorless else ''}"
         )
+
+
+def _room(scale: Scale) -> Scale:
+    """Return a scale of errors that spans a factor `_LEAST` at least: less makes noise of a thousandth look like a fall."""
+    more = max(1.0, np.sqrt(_LEAST * scale.low / scale.high))
+    return Scale(float(scale.low / more), float(scale.high * more), True)
 
 
 def _end_of(curve: ErrorCurve, axes: Axes, up: Scale) -> EndLabel:

@@ -9,9 +9,12 @@ from textwrap import wrap
 from fogproof.reports.charts.axes import Marker, mark
 from fogproof.reports.charts.colours import INK
 from fogproof.reports.charts.sheet import FONT_SIZE, Outline, Sheet, Words
+from fogproof.reports.charts.sheet_png import text_width
 
 _LINE = 1.15 * FONT_SIZE
 _GAP = 0.3 * FONT_SIZE
+_LETTER = 7.5
+"""Width [px] of a letter of English text, about."""
 _BESIDE = 44.0
 """Between the axes and the names [px]: the leader, and a piece of the curve with its mark."""
 
@@ -28,8 +31,13 @@ class EndLabel:
 
 
 def lines_of(text: str, width: int) -> list[str]:
-    """Return a name on as many lines as it needs, of at most so many characters."""
-    return wrap(text, width) or [text]
+    """Return a name on as many lines as it needs, of at most so many characters, fewer where they are wide."""
+    most = _LETTER * width
+    for letters in range(width, 1, -1):
+        lines = wrap(text, letters) or [text]
+        if max(text_width(line, FONT_SIZE) for line in lines) <= most:
+            return lines
+    return wrap(text, 1) or [text]
 
 
 def height_of(names: Sequence[str], width: int) -> float:

@@ -50,7 +50,8 @@ class PValues:
         marks = [one for one in marks if one[0].any()]
         keys += [Key(name, OBSERVED, marker) for _, marker, name in marks]
         top = legend(sheet, keys, 20, 0, sheet.width - 20) + 4
-        x, y = Scale(middle[0] / 1.3, 1.1, True), Scale(floor / 2, 1.5, True)
+        lowest = max(floor, min(float(low[0]), float(p[0])))
+        x, y = Scale(middle[0] / 1.3, 1.1, True), Scale(lowest / 2, 1.5, True)
         axes = Axes(sheet, (78, top, sheet.width - 92, sheet.height - top - 50), x, y)
         axes.frame("expected p-value of this rank", "p-value")
         axes.band(middle, low, high, GRID, 1)

@@ -83,10 +83,13 @@ def _decades(low: float, high: float, most: int) -> list[tuple[float, str]]:
         return []
     first, last = floor(log10(low)), ceil(log10(high))
     span = log10(high) - log10(low)
-    factors = (1, 2, 5) if span < 2 else (1,)
     every = max(1, ceil(span / most))
-    values = [f * 10.0**e for e in range(first, last + 1) if e % every == 0 for f in factors]
-    within = [value for value in values if low * (1 - 1e-9) <= value <= high * (1 + 1e-9)]
+    within: list[float] = []
+    for factors in ((1, 2, 5),) if span < 2 else ((1,), (1, 3), (1, 2, 5)):
+        values = [f * 10.0**e for e in range(first, last + 1) if e % every == 0 for f in factors]
+        within = [value for value in values if low * (1 - 1e-9) <= value <= high * (1 + 1e-9)]
+        if len(within) > 2:
+            break
     if len(within) < 2:
         return _steps(low, high, most)
     plain = all(1e-3 <= value < 1e5 for value in within)  # one notation an axis

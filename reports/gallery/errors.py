@@ -58,8 +58,9 @@ class ErrorAgainstWork:
         ratio = (errors["free-path"][0][-1] / errors["equiangular"][0][-1]) ** 2
         return (
             "Light scattered once into a ray of 12 m that passes a light at 5 cm: relative error over the number of places "
-            f"looked at, from {self.repeats} runs each. For the same error free-path samples need about {ratio:.0e} times as "
-            "many places as equiangular ones; marching falls faster once its steps are shorter than 5 cm."
+            f"looked at, from {self.repeats} runs each. For the same error free-path samples need about "
+            f"{float(f'{ratio:.1g}'):,.0f} times as many places as equiangular ones; marching falls faster once its steps are "
+            "shorter than 5 cm."
         )
 
 

@@ -26,12 +26,16 @@ _WRONG = {"rejected", "surprise", "error"}
 
 @dataclass(frozen=True)
 class Pair:
-    """One case in two runs; None in the run that lacks it. `became` holds those of `BECAME` that were found of it."""
+    """One case in two runs; None in the run that lacks it. `became` holds those of `BECAME` that were found of it.
+
+    worse  whether that is worse than it was
+    """
 
     name: str
     before: Case | None
     after: Case | None
     became: tuple[str, ...] = ()
+    worse: bool = False
 
     @property
     def change(self) -> str:
@@ -55,11 +59,10 @@ class Pair:
 def pair_cases(before: RunRecord, after: RunRecord, history: History | None = None) -> list[Pair]:
     """Return the cases of both runs, matched by name, what needs attention first."""
     old, new = ({case.name: case for case in run.cases} for run in (before, after))
-    became = {
-        f"{change.scene} / {change.estimator}": tuple(word for word in BECAME if word in change.became)
-        for change in (history.changes if history else ())
-    }
-    pairs = [Pair(name, old.get(name), new.get(name), became.get(name, ())) for name in old | new]
+    changes = {f"{change.scene} / {change.estimator}": change for change in (history.changes if history else ())}
+    became = {name: tuple(word for word in BECAME if word in change.became) for name, change in changes.items()}
+    worse = {name for name, change in changes.items() if change.worse}
+    pairs = [Pair(name, old.get(name), new.get(name), became.get(name, ()), name in worse) for name in old | new]
     return sorted(pairs, key=lambda pair: (CHANGES.index(pair.change), not pair.wrong))
 
 
@@ -80,7 +83,8 @@ def write_comparison_page(before: RunRecord, after: RunRecord, folder: Path, his
         picture.save(folder / "figures")
     counts = {change: sum(pair.change == change for pair in pairs) for change in CHANGES}
     still = sum(pair.wrong and pair.change != "worse" for pair in pairs)
-    words = headline(counts, still, len(pairs), history is not None and history.worse)
+    became = {word: sum(word in pair.became or word == pair.change for pair in pairs) for word in CHANGES}
+    words = headline(became, still, len(pairs), sum(pair.worse or pair.change == "worse" for pair in pairs))
     page = fill(
         "comparison.html",
         kind="comparison",
@@ -101,15 +105,13 @@ def write_comparison_page(before: RunRecord, after: RunRecord, folder: Path, his
     return write_file(folder / "comparison.html", page)
 
 
-def headline(counts: dict[str, int], still: int, total: int, slipped: bool = False) -> tuple[str, str]:
+def headline(counts: dict[str, int], still: int, total: int, slipped: int = 0) -> tuple[str, str]:
     """Return what changed in words: a sentence that stands alone, and the counts behind it.
 
-    slipped  whether something is slower, noisier or off while no case came out otherwise
+    slipped  how many came out worse: wrong, biased, slower or noisier
     """
-    if counts["worse"]:
-        first = f"{some_cases(counts['worse'])} came out worse"
-    elif slipped:
-        first = "Something came out worse than before"
+    if slipped or counts["worse"]:
+        first = f"{some_cases(max(slipped, counts['worse']))} came out worse"
     elif still:
         first = f"Nothing came out worse, but {some_cases(still)} {'is' if still == 1 else 'are'} wrong as before"
     elif counts["gone"]:

@@ -86,6 +86,7 @@ def write_study_page(study: StudyRecord, folder: Path) -> Path:
         run=run,
         scenes=shown,
         questions=_questions(study, shown),
+        timed=next((one.scene.name for one in shown if one.targets), ""),
         counts=counts,
         heavy=[row for one in shown for row in one.rows if row.entry.warning],
         needs=needs(run.cases),

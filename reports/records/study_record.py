@@ -213,13 +213,17 @@ class TimeChange(EstimateRecord):
 
 @dataclass(frozen=True)
 class Change:
-    """What became of an estimator since an earlier run; time and variance are ratios after / before."""
+    """What became of an estimator since an earlier run; time and variance are ratios after / before.
+
+    worse  biased, or slower or noisier without as much the better for it
+    """
 
     scene: str
     estimator: str
     became: tuple[str, ...]
     time: TimeChange | None = None
     variance: EstimateRecord | None = None
+    worse: bool = False
 
 
 @dataclass(frozen=True)

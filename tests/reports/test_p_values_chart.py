@@ -39,3 +39,8 @@ def test_a_few_p_values_make_no_histogram():
 
 def test_a_p_value_too_small_for_a_number_is_not_called_0():
     assert "the smallest is < 1e-300;" in render(PValues((0.0, 0.4, 0.7)), "p").words
+
+
+def test_p_values_that_chance_explains_do_not_lie_at_the_top_of_an_empty_picture():
+    svg = render(PValues((0.2, 0.5, 0.8)), "p").svg
+    assert "10⁻⁶" not in svg

@@ -158,5 +158,5 @@ def test_it_becomes_worse(ran, tmp_path):
     assert shown.returncode == 1
     page = (folder / "run" / "comparison.html").read_text()
     assert "Noisier: lit / airlight" in page
-    assert "Something came out worse than before" in page
+    assert "1 case came out worse" in page
     assert "Noisier: lit / airlight" in (folder / "run" / "index.html").read_text()

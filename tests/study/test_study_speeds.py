@@ -164,6 +164,37 @@ def test_one_estimator_alone_is_told_to_be_slower(alone):
     assert not compare(alone, times_as_slow(alone, 1.05))["worse"]
 
 
+def with_variance(record, factor, **more):
+    """Return the record with so many times the variance, of other draws."""
+    after = copy.deepcopy(record)
+    e = after["scenes"][0]["estimators"][0]
+    e["variance"] |= {key: factor * e["variance"][key] for key in ("measured", "low", "high")} | more
+    e["moments"]["m2"] *= factor
+    return after
+
+
+@pytest.mark.parametrize(
+    ("slow", "noisy", "worse"),
+    [(8, 1 / 8, False), (8, 1 / 80, False), (8, 1 / 2, True), (1 / 8, 8, False), (1, 8, True)],
+)
+def test_what_comes_to_an_error_as_soon_as_before_is_not_worse(alone, slow, noisy, worse):
+    """Eight times the time of a sample at an eighth of the variance is the same time to an error."""
+    found = compare(alone, with_variance(times_as_slow(alone, slow), noisy))
+    assert found["changes"][0]["became"]
+    assert (found["worse"], found["changes"][0]["worse"]) == (worse, worse)
+    assert ("to the same error as soon as before" in found["text"]) != worse
+
+
+def test_a_variance_without_an_upper_end_is_compared(alone):
+    """As it stands in a record: a tail that may hold more of it makes nobody less noisy, and hides nothing that became noisier."""
+    heavy = with_variance(alone, 1.0, high="inf")
+    assert compare(heavy, alone)["changes"][0]["variance"]["low"] == 0
+    assert compare(heavy, with_variance(alone, 1 / 8))["changes"][0]["became"] == ["less noisy"]
+    assert compare(heavy, with_variance(alone, 8))["changes"][0]["became"] == []
+    assert compare(alone, with_variance(alone, 8, high="inf"))["changes"][0]["became"] == ["noisier"]
+    assert compare(alone, with_variance(alone, 1 / 8, high="inf"))["changes"][0]["became"] == []
+
+
 @pytest.mark.parametrize("other", [{"numpy": "1.0"}, {"cores": 1000}])
 def test_on_another_machine_fixed_work_tells_nothing(alone, other):
     after = times_as_slow(alone, 3)

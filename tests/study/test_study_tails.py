@@ -1,12 +1,14 @@
 """What heavy tails and rare values leave open: intervals that hold, times without an end, and no advice that never ends."""
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
 from study_levels import MEAN, Law, cell, level, normal
 
 from fogproof.checks.statistics.tails import binomial_at_least
+from fogproof.contracts import Reference
 from fogproof.study.aggregate import pooled
 from fogproof.study.judgement import judge
 from fogproof.study.measures import measure
@@ -72,6 +74,28 @@ def test_a_rare_value_that_was_not_met_leaves_no_time_to_an_error_an_end():
     assert [(t["how"], t["unless"], t["low"], t["high"]) for t in one.record["speed"]["targets"]] == [
         ("less-than", "rare", 0, math.inf)
     ] * 3
+
+
+def test_hits_that_never_missed_may_miss_as_often_as_would_not_have_been_seen(monkeypatch):
+    """Bounds decide about the mean to some per cent: to a smaller error no time has an end, unless the variance is known."""
+    monkeypatch.setitem(methods.METHODS, "bounded", Bounded)
+    one, hits = cell(), [level(np.full((32, n), MEAN * (1 + 1e-6))) for n in COUNTS]
+    for variance, unless in ((None, ["rare"] * 3), (Reference(np.asarray(1e-6)), ["", "", ""])):
+        object.__setattr__(one, "method", Bounded(lambda rng, n: 0.0, variance))
+        found = measure(one, hits, 1e-9)
+        assert found.status == "passed"
+        assert [t["unless"] for t in found.record["speed"]["targets"]] == unless
+
+
+@dataclass(frozen=True)
+class Bounded(Law):
+    known: Reference | None = None
+
+    def bounds(self, scene):
+        return 0.0, MEAN * (1 + 1e-6)
+
+    def variance(self, scene):
+        return self.known
 
 
 @pytest.mark.parametrize(("law", "lacks"), [(pareto(2.2), "tail"), (rare(300.0, 1e5), "law")])

@@ -148,10 +148,15 @@ def _cells(estimator: dict[str, Any], targets: int) -> list[str]:
     return [*words, *(times or [""] * targets), relative]
 
 
+_LONGEST = 40
+"""Characters of a title in a row."""
+
+
 def _name(estimator: dict[str, Any]) -> str:
     """Return the name of a row, with the title that sentences call it by where somebody else wrote that."""
     name, label = one_line(estimator["name"]), one_line(estimator["label"])
-    return f"{name} “{label}”" if ":" in estimator["kind"] and label != name else name
+    short = label if len(label) <= _LONGEST else f"{label[: _LONGEST - 1]}…"
+    return f"{name} “{short}”" if ":" in estimator["kind"] and label != name else name
 
 
 def _relative(speed: dict[str, Any]) -> str:

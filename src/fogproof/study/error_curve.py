@@ -52,10 +52,17 @@ def error_curve(
         exact = variance is not None and 0 <= float(variance.error) < 1e-6 * float(variance.value) < math.inf
         size = float(variance.value) if exact and variance is not None else data.variance
         law = variance_law(size, spread(data), beyond(levels, data, float(cell.reference.value)), exact)
-        law = law if data.m2 > 0 and _follows(law.value, cell, levels, errors, data) else None
+        alike = data.m2 == 0  # values that were not met make the variance, if it is known that there is one
+        law = (
+            law
+            if (exact and alike and size > 0) or (not alike and _follows(size, cell, levels, errors, data))
+            else None
+        )
         # Where calls depend on each other too weakly to be told, their error is that of so much more variance.
         law = law and replace(law, high=law.high * judged.design_effect)
     hidden = 0.0 if law is None or bias is None else max(-bias.low, bias.high)
+    if law is None and data.n and data.low == data.high and not cell.method.bias:
+        hidden = next((f.resolution.value for f in judged.findings if f.check == "mean" and f.resolution), 0.0)
     rare = judged.rare and not (cell.method.bias and data.low == data.high)
     smooth = cell.method.axis != "samples"
     return ErrorOverTime(counts, errors, times, law, stays, smooth, bias=hidden, rare=rare)

@@ -8,12 +8,14 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Sequence
+from dataclasses import asdict
 from typing import Any
 
 from fogproof.checks.statistics.moments import Moments
 from fogproof.checks.statistics.tails import normal_quantile
 from fogproof.checks.statistics.welch import difference_test
 from fogproof.study.convergence import Z
+from fogproof.study.speed import scaled
 from fogproof.study.speed_change import LEAST, SpeedChange, Speeds, estimate, speed_changes
 from fogproof.study.speed_change import became as became_speed
 
@@ -33,6 +35,8 @@ def compare(before: dict[str, Any], after: dict[str, Any], alpha: float = 1e-6) 
         text = "no estimator is in both runs: nothing was compared"
     else:
         text = "; ".join(said) if said else "nothing changed beyond noise"
+        even = [_title(c) for c in changes if {"slower", "noisier"} & set(c["became"]) and not c["worse"]]
+        text += f"; to the same error as soon as before, for all that was seen: {', '.join(even)}" if even else ""
         text += _perhaps(changes) + _of_speeds(speeds, changes)
     text += f"; gone: {_some(gone)}" if gone and pairs else ""
     return {
@@ -47,7 +51,7 @@ def compare(before: dict[str, Any], after: dict[str, Any], alpha: float = 1e-6) 
         "gone": gone,
         "new": new,
         "changes": changes,
-        "worse": bool(found["slower"] or found["noisier"] or found["biased"]),
+        "worse": any(change["worse"] for change in changes),
         "text": text,
     }
 
@@ -78,6 +82,20 @@ def _machines(record: dict[str, Any]) -> set[str]:
 def _one_run(before: dict[str, Any], after: dict[str, Any]) -> bool:
     one, other = ({key: told for key, told in record.items() if key != "history"} for record in (before, after))
     return one == other
+
+
+def _slipped(change: dict[str, Any]) -> bool:
+    """Return whether an estimator became slower or noisier, and not so much less of the other that its errors come as soon."""
+    became, time, variance = set(change["became"]), change["time"], change["variance"]
+    if not {"slower", "noisier"} & became:
+        return False
+    if not {"faster", "less noisy"} & became or not (time and variance):
+        return True
+    off = math.log(time["value"]) + math.log(
+        variance["value"]
+    )  # time to an error: that of a sample, times the variance
+    below = (math.log(one["value"] / one["low"]) if one["low"] > 0 else math.inf for one in (time, variance))
+    return off > math.hypot(*below)
 
 
 def _perhaps(changes: Sequence[dict[str, Any]]) -> str:
@@ -111,7 +129,14 @@ def _change(
 ) -> dict[str, Any]:
     became = [*_biased(old, young, alpha), *_noisier(old, young, alpha), *became_speed(speed, alpha)]
     time = estimate(speed, alpha) if speed else None
-    return {"scene": scene, "estimator": young["name"], "became": became, "time": time, "variance": _ratio(old, young)}
+    change = {
+        "scene": scene,
+        "estimator": young["name"],
+        "became": became,
+        "time": time,
+        "variance": _ratio(old, young),
+    }
+    return {**change, "worse": "biased" in became or _slipped(change)}
 
 
 def _moments(estimator: dict[str, Any]) -> Moments:
@@ -143,17 +168,24 @@ def _ratio(old: dict[str, Any], young: dict[str, Any]) -> dict[str, float] | Non
     a, b = old["variance"], young["variance"]
     if not a or not b or not (a["measured"] > 0 and b["measured"] > 0) or young["axis"] != "samples":
         return None
-    reach = math.exp(math.hypot(math.log(a["high"] / a["measured"]), math.log(b["high"] / b["measured"])))
+    (below, above), (own_below, own_above) = (_reach(one) for one in (a, b))
     ratio = b["measured"] / a["measured"]
-    return {"value": ratio, "low": ratio / reach, "high": ratio * reach}
+    return asdict(scaled(ratio, math.hypot(own_below, above), math.hypot(own_above, below)))
+
+
+def _reach(variance: dict[str, Any]) -> tuple[float, float]:
+    """Return how far the logarithm of a variance reaches below and above; a heavy tail leaves no upper end, "inf" in a record."""
+    low, value, high = (float(variance[end]) for end in ("low", "measured", "high"))
+    return math.log(value / low) if low > 0 else math.inf, math.log(high / value)
 
 
 def _noisier(old: dict[str, Any], young: dict[str, Any], alpha: float) -> list[str]:
     ratio = _ratio(old, young)
     if ratio is None or old["moments"] == young["moments"]:
         return []
-    spread = math.log(ratio["high"] / ratio["value"]) / Z
     off = math.log(ratio["value"])
+    towards = ratio["low"] if off > 0 else ratio["high"]  # no change lies on that side
+    spread = abs(math.log(towards / ratio["value"])) / Z if 0 < towards < math.inf else math.inf
     if spread > 0 and abs(off) > normal_quantile(alpha / 2) * spread:
         return ["noisier" if off > 0 else "less noisy"]
     return []

@@ -36,7 +36,7 @@ class ErrorOverTime:
     stays     what no number of samples or steps takes away: a bias that was shown, rounding
     smooth    whether nothing is random: then an error may be small by a lucky crossing, and grow again
     ends      whether more samples were asked for and could not be drawn
-    bias      the largest that there may be, where the law takes it to be 0
+    bias      the largest that there may be, where the law takes it to be 0, or all values are alike
     rare      whether values that were not met may hold more of the error
     times     of one estimate at each
     law       the variance of one realisation with its interval where the error is sqrt(variance / count); None elsewhere
@@ -160,7 +160,7 @@ def reach_of(curve: ErrorOverTime, target: float, error: float, hidden: float = 
     """
     if curve.law is not None:
         return _by_the_law(curve, curve.law, target, error, hidden)
-    unless: Unless = "rare" if curve.rare else ""
+    unless: Unless = "rare" if curve.rare or curve.bias >= target else ""
     size = np.array([e.value for e in curve.errors])
     how: How
     first = len(size)
