@@ -99,7 +99,7 @@ def command(
     if folder is not None:
         from fogproof.images.report import write_comparison
 
-        with unwritten.told():
+        with unwritten.noted():
             say(f"report: {write_comparison(done, folder)}", err=True)
     return unwritten.code(CODES[done.verdict.outcome])
 

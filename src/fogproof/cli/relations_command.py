@@ -103,11 +103,11 @@ def command(
             say(json.dumps(row) if as_json else _line(row))
             for reason in row.get("unwritten", ()):
                 unwritten.tell(reason)
-            with unwritten.told():
+            with unwritten.noted():
                 write_record(rows, run, folder, asked, whole=False)
     if stop.code:
         say(f"stopped after {len(rows)} of {asked} relations; what was rendered is kept", err=True)
-    with unwritten.told():
+    with unwritten.noted():
         say(f"report: {write_record(rows, run, folder, asked, whole=not stop.code)}", err=True)
     outcomes = {row["outcome"] for row in rows}
     return stop.code or unwritten.code(1 if "rejected" in outcomes else 0 if outcomes <= {"not rejected"} else 3)

@@ -84,11 +84,11 @@ def command(
             say(json.dumps(row) if as_json else _line(row, width))
             for reason in row.get("unwritten", ()):
                 unwritten.tell(reason)
-            with unwritten.told():
+            with unwritten.noted():
                 write_page(rows, wanted, folder, len(scenes))
     if stop.code:
         say(f"stopped after {len(rows)} of {len(scenes)} scenes; these are kept", err=True)
-    with unwritten.told():
+    with unwritten.noted():
         say(f"report: {write_page(rows, wanted, folder, len(scenes))}", err=True)
     outcomes = {row["outcome"] for row in rows}
     return stop.code or unwritten.code(1 if "rejected" in outcomes else 0 if outcomes <= {"not rejected"} else 3)

@@ -26,7 +26,7 @@ class Unwritten:
             say(f"fogproof: {reason}", err=True)
 
     @contextlib.contextmanager
-    def told(self) -> Iterator[None]:
+    def noted(self) -> Iterator[None]:
         """Write in this block: what fails is said, and the command goes on."""
         try:
             yield

@@ -89,13 +89,13 @@ def _kept_or_rendered(path: Path, scene: ImageScene, wanted: Wanted, place: Path
         return {**before.row, "kept": True}
     if before is not None and before.image is not None:
         row = _compare(path, before.image, scene, wanted, place) | {"seconds": before.row["seconds"]}
-        with _told(row):
+        with _noted(row):
             write_file(place / "scene.json", source)
         _keep(place, key, row)
         return {**row, "kept": True}
     started = time.perf_counter()
     row = _row(path.stem, "error", "the scene could not be written, and was not rendered")
-    with _told(row):
+    with _noted(row):
         begin(place, key)
         write_file(place / "scene.json", source)
     if "unwritten" in row:
@@ -107,7 +107,7 @@ def _kept_or_rendered(path: Path, scene: ImageScene, wanted: Wanted, place: Path
 
 
 @contextlib.contextmanager
-def _told(row: dict[str, Any]) -> Iterator[None]:
+def _noted(row: dict[str, Any]) -> Iterator[None]:
     """Write files of a row in this block: if one cannot be, the row says so, and stays."""
     try:
         yield
@@ -118,7 +118,7 @@ def _told(row: dict[str, Any]) -> Iterator[None]:
 def _keep(place: Path, key: str, row: dict[str, Any]) -> None:
     """Keep a row whose files are all there; any other is made again by the next run."""
     if "unwritten" not in row:
-        with _told(row):
+        with _noted(row):
             keep(place, key, row, WRITTEN)
 
 
@@ -156,7 +156,7 @@ def _compare(path: Path, image: Path, scene: ImageScene, wanted: Wanted, place: 
     row = _row(path.stem, verdict.outcome, f"{verdict.cause}: {verdict.diagnosis}" if verdict.cause else "")
     told = [f"{ratio:.6g} ({interval.low:.6g} to {interval.high:.6g})" for _, ratio, interval in done.ratios]
     row |= {"ratio": ", ".join(told), "resolution": resolution}
-    with _told(row):
+    with _noted(row):
         row["page"] = f"{path.stem}/{write_comparison(done, place).name}"
     return row
 
