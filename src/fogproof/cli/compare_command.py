@@ -9,6 +9,7 @@ import click
 
 from fogproof.cli.force import FORCE, take
 from fogproof.cli.terminal import say
+from fogproof.cli.unwritten import Unwritten
 from fogproof.cli.values import FOLDER, NAMED, PROBABILITY, RELATIVE
 from fogproof.images.compare import compare_image
 from fogproof.images.judging import ALPHA, TOLERANCE, ImageComparison
@@ -94,11 +95,13 @@ def command(
             correlated=correlated,
         )
     _tell(done, as_json)
+    unwritten = Unwritten()
     if folder is not None:
         from fogproof.images.report import write_comparison
 
-        say(f"report: {write_comparison(done, folder)}", err=True)
-    return CODES[done.verdict.outcome]
+        with unwritten.noted():
+            say(f"report: {write_comparison(done, folder)}", err=True)
+    return unwritten.code(CODES[done.verdict.outcome])
 
 
 def _tell(done: ImageComparison, as_json: bool) -> None:

@@ -13,9 +13,10 @@ import click
 from fogproof.cli.force import FORCE, take
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
+from fogproof.cli.unwritten import Unwritten
 from fogproof.cli.values import FOLDER, PLACE, PROBABILITY, RELATIVE, SECONDS
 from fogproof.images.judging import ALPHA, TOLERANCE
-from fogproof.images.relation_run import RelationRun, count_relations, run_relations, write_record
+from fogproof.images.relation_run import RelationRun, relation_names, run_relations, write_record
 from fogproof.renderers.table import renderer_of, require_command
 
 
@@ -89,23 +90,27 @@ def command(
     )  # fmt: skip
     read_image_scenes(scenes)  # what cannot be read is told before hours of rendering
     scene_names(scenes)
+    names = relation_names(scenes, run)
+    if missed := [pattern for pattern in only if not any(fnmatch.fnmatchcase(name, pattern) for name in names)]:
+        raise click.UsageError(f"no relation of these scenes is named {' or '.join(missed)}")
     require_command(chosen, python)
     take(folder, PAGE, force)
     rows: list[dict[str, Any]] = []
-    asked = count_relations(scenes, run, folder)
+    asked, unwritten = len(names), Unwritten()
     with interruptible() as stop:
         for row in run_relations(scenes, run, folder):
             rows.append(row)
             say(json.dumps(row) if as_json else _line(row))
-            write_record(rows, run, folder, asked, whole=False)
+            for reason in row.get("unwritten", ()):
+                unwritten.tell(reason)
+            with unwritten.noted():
+                write_record(rows, run, folder, asked, whole=False)
     if stop.code:
         say(f"stopped after {len(rows)} of {asked} relations; what was rendered is kept", err=True)
-    missed = [pattern for pattern in only if not any(fnmatch.fnmatchcase(row["relation"], pattern) for row in rows)]
-    if missed and not stop.code and all(row["relation"] for row in rows):
-        raise click.UsageError(f"no relation of these scenes is named {' or '.join(missed)}")
-    say(f"report: {write_record(rows, run, folder, asked, whole=not stop.code)}", err=True)
+    with unwritten.noted():
+        say(f"report: {write_record(rows, run, folder, asked, whole=not stop.code)}", err=True)
     outcomes = {row["outcome"] for row in rows}
-    return stop.code or (1 if "rejected" in outcomes else 0 if outcomes <= {"not rejected"} else 3)
+    return stop.code or unwritten.code(1 if "rejected" in outcomes else 0 if outcomes <= {"not rejected"} else 3)
 
 
 def _line(row: dict[str, Any]) -> str:

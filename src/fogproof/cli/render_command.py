@@ -12,6 +12,7 @@ import click
 from fogproof.cli.force import FORCE, take
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
+from fogproof.cli.unwritten import Unwritten
 from fogproof.cli.values import FOLDER, PLACE, PROBABILITY, RELATIVE, SECONDS
 from fogproof.images.judging import ALPHA, TOLERANCE
 from fogproof.images.renders import WRITTEN, Wanted, render_scenes, write_page
@@ -76,17 +77,21 @@ def command(
         if (folder / name).exists():
             prepare_folder(folder / name, WRITTEN, force)
     rows: list[dict[str, Any]] = []
-    width = max(map(len, names))
+    width, unwritten = max(map(len, names)), Unwritten()
     with interruptible() as stop:
         for row in render_scenes(scenes, wanted, folder):
             rows.append(row)
             say(json.dumps(row) if as_json else _line(row, width))
-            write_page(rows, wanted, folder, len(scenes))
+            for reason in row.get("unwritten", ()):
+                unwritten.tell(reason)
+            with unwritten.noted():
+                write_page(rows, wanted, folder, len(scenes))
     if stop.code:
         say(f"stopped after {len(rows)} of {len(scenes)} scenes; these are kept", err=True)
-    say(f"report: {write_page(rows, wanted, folder, len(scenes))}", err=True)
+    with unwritten.noted():
+        say(f"report: {write_page(rows, wanted, folder, len(scenes))}", err=True)
     outcomes = {row["outcome"] for row in rows}
-    return stop.code or (1 if "rejected" in outcomes else 0 if outcomes <= {"not rejected"} else 3)
+    return stop.code or unwritten.code(1 if "rejected" in outcomes else 0 if outcomes <= {"not rejected"} else 3)
 
 
 def _line(row: dict[str, Any], width: int) -> str:

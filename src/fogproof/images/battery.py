@@ -11,7 +11,7 @@ import numpy as np
 from fogproof.analytic import image
 from fogproof.checks.verdict import Verdict
 from fogproof.contracts import Reference
-from fogproof.errors import FogproofError, UnsupportedError
+from fogproof.errors import FogproofError, SubjectError, UnsupportedError
 from fogproof.images.compare import compare_renders
 from fogproof.images.judging import ALPHA, TOLERANCE
 from fogproof.images.pairs import compare_pair
@@ -26,7 +26,10 @@ ORACLE_SHARE = 0.5
 """Of alpha, for the oracle's rows."""
 
 Render = Callable[[ImageSetting, int], np.ndarray]
-"""(setting, which of its independent renders) -> (rows, columns, channels) linear radiance; raises `UnsupportedError`."""
+"""(setting, which of its independent renders) -> (rows, columns, channels) linear radiance.
+
+It raises `UnsupportedError` where the renderer has no such thing, another `FogproofError` where it failed.
+"""
 
 
 @dataclass(frozen=True)
@@ -39,6 +42,7 @@ class ImageRelation:
     first     each rendered side against the oracle: an outcome, "" where there is no oracle
     second
     reason    why a side was not rendered, or who is wrong
+    failed    whether it is not known because the renderer failed, or what it left cannot be read
     """
 
     name: str
@@ -47,12 +51,13 @@ class ImageRelation:
     first: str = ""
     second: str = ""
     reason: str = ""
+    failed: bool = False
 
     @property
     def outcome(self) -> str:
         """What is told of the relation: that of both sides, or that a side is not the oracle's."""
         if self.verdict is None:
-            return "not rendered"
+            return "error" if self.failed else "not rendered"
         against = {self.first, self.second}
         return "rejected" if "rejected" in against else self.verdict.outcome
 
@@ -108,8 +113,9 @@ def image_relations(scene: ImageScene, battery: Battery, only: Sequence[Comparis
     for comparison in only or everything:
         try:
             first, second = (sight.side(terms) for terms in (comparison.first, comparison.second))
-        except UnsupportedError as error:
-            yield ImageRelation(comparison.name, comparison.isolates, None, reason=str(error))
+        except (FogproofError, OSError) as error:  # of this relation alone: the others are asked for all the same
+            failed = not isinstance(error, UnsupportedError)
+            yield ImageRelation(comparison.name, comparison.isolates, None, reason=str(error), failed=failed)
             continue
         done = _compared(first, second, battery, alpha if not comparison.same_law else 0.5 * alpha)
         if comparison.same_law:
@@ -164,6 +170,7 @@ class _Sight:
 
     battery: Battery
     rendered: dict[str, np.ndarray] = field(default_factory=dict)
+    failed: dict[str, FogproofError | OSError] = field(default_factory=dict)
     told: dict[str, Reference | None] = field(default_factory=dict)
     judged: dict[tuple[str, str], str] = field(default_factory=dict)
 
@@ -186,8 +193,17 @@ class _Sight:
     def renders(self, setting: ImageSetting) -> np.ndarray:
         """Return the independent renders of a setting, (n, rows, columns, channels); a grey image has one channel."""
         key = _key(setting)
+        if key in self.failed:  # nobody waits for the same failure once more
+            raise self.failed[key]
         if key not in self.rendered:
-            found = np.stack([self.battery.render(setting, i) for i in range(self.battery.renders)]).astype(float)
+            try:
+                each = [self.battery.render(setting, i) for i in range(self.battery.renders)]
+                if len(shapes := {one.shape for one in each}) > 1:
+                    raise SubjectError(f"independent renders of one scene differ in size: {sorted(shapes)}")
+            except (FogproofError, OSError) as error:
+                self.failed[key] = error
+                raise
+            found = np.stack(each).astype(float)
             alike = found.shape[-1] > 1 and setting.scene.channels is None and (found == found[..., :1]).all()
             self.rendered[key] = found[..., :1] if alike else found
         return self.rendered[key]

@@ -8,14 +8,14 @@ import hashlib
 import json
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from fogproof.errors import FogproofError, UnsupportedError
-from fogproof.images.battery import Battery, ImageRelation, image_relations, planned
+from fogproof.errors import FogproofError, InvalidInputError, SubjectError, UnsupportedError
+from fogproof.images.battery import Battery, ImageRelation, Render, image_relations, planned
 from fogproof.images.kept import digest_of
 from fogproof.images.picture import read_picture
 from fogproof.relations import Comparison, ImageSetting
@@ -59,6 +59,7 @@ def run_relations(scenes: Sequence[Path], run: RelationRun, folder: Path) -> Ite
     """Yield a row for each relation of each scene as soon as it is known.
 
     Outcomes are "not rejected", "rejected", "inconclusive", "not rendered" (the renderer has no such thing) and "error".
+    `unwritten` says why files of a row are not there, if any could not be written.
     """
     for path in scenes:
         try:
@@ -67,33 +68,27 @@ def run_relations(scenes: Sequence[Path], run: RelationRun, folder: Path) -> Ite
             yield _row(path.stem, "", "", "error", str(error))
             continue
         commands = Commands(run, folder / path.stem / "renders")
-        battery = _battery(commands, run, len(scenes))
+        battery = _battery(commands.render, run, len(scenes))
         wanted = _wanted(scene, battery, run)
         started = time.perf_counter()
-        try:
-            for relation in image_relations(scene, battery, wanted) if wanted else ():
-                row = _row_of(path.stem, relation, time.perf_counter() - started)
-                started = time.perf_counter()
-                yield row
-        except RenderError as error:
-            yield _row(path.stem, "", "", "error", str(error))
+        for relation in image_relations(scene, battery, wanted) if wanted else ():
+            row = _row_of(path.stem, relation, time.perf_counter() - started)
+            if commands.unwritten:
+                row["unwritten"] = [*commands.unwritten]
+                commands.unwritten.clear()
+            started = time.perf_counter()
+            yield row
 
 
-def count_relations(scenes: Sequence[Path], run: RelationRun, folder: Path) -> int:
-    """Return how many rows a run will have if its renderer never fails; a scene that cannot be read has one."""
-    count = 0
-    for path in scenes:
-        try:
-            battery = _battery(Commands(run, folder), run, len(scenes))
-            count += len(_wanted(read_image_scene(path), battery, run))
-        except FogproofError:
-            count += 1
-    return count
+def relation_names(scenes: Sequence[Path], run: RelationRun) -> list[str]:
+    """Return the names of the relations that a run will ask for, scene by scene."""
+    battery = _battery(Commands(run, Path()).render, run, len(scenes))
+    return [one.name for path in scenes for one in _wanted(read_image_scene(path), battery, run)]
 
 
-def _battery(commands: Commands, run: RelationRun, scenes: int) -> Battery:
+def _battery(render: Render, run: RelationRun, scenes: int) -> Battery:
     return Battery(
-        commands.render,
+        render,
         run.integrators,
         run.renderer.takes("threads"),
         run.renderer.takes("seed"),
@@ -112,16 +107,16 @@ def _wanted(scene: ImageScene, battery: Battery, run: RelationRun) -> list[Compa
     ]
 
 
-class RenderError(FogproofError):
-    """A renderer that failed, so that nothing more is asked of it in this scene."""
-
-
 @dataclass(frozen=True)
 class Commands:
-    """Renders of one scene's settings by a command, kept in a folder."""
+    """Renders of one scene's settings by a command, kept in a folder.
+
+    unwritten  why files were not written since the last relation
+    """
 
     run: RelationRun
     folder: Path
+    unwritten: list[str] = field(default_factory=list)
 
     def render(self, setting: ImageSetting, which: int) -> np.ndarray:
         """Return one of the independent renders of a setting, (rows, columns, channels)."""
@@ -136,18 +131,25 @@ class Commands:
         image = kept = next((one for one in images if _finished(done, one)), None)
         if image is None:
             source = self.folder / f"{key}.scene.json"
-            prepare_folder(self.folder, tuple(one.name for one in (*images, done, source)), self.run.force)
-            write_file(done, json.dumps(told | {"state": "unfinished"}))
-            write_file(source, scene)
-            found = render_one(self.run.renderer, source, out, values, self.run.seconds)
+            try:
+                prepare_folder(self.folder, tuple(one.name for one in (*images, done, source)), self.run.force)
+                write_file(done, json.dumps(told | {"state": "unfinished"}))
+                write_file(source, scene)
+                found = render_one(self.run.renderer, source, out, values, self.run.seconds)
+            except (FogproofError, OSError) as error:
+                self.unwritten.append(str(error))
+                raise
             if isinstance(found, RenderFailure):
                 if found.refused:
                     raise UnsupportedError(found.reason, "scene")
-                raise RenderError(found.reason)
+                raise SubjectError(found.reason)
             image = found
         picture = read_picture([image], setting.scene.camera.film, setting.scene.channels)
         if kept is None:  # only what is whole, and can be read, is taken up again
-            write_file(done, json.dumps(told | {"state": "finished", "digest": digest_of(image)}))
+            try:
+                write_file(done, json.dumps(told | {"state": "finished", "digest": digest_of(image)}))
+            except InvalidInputError as error:  # it is judged all the same, and rendered again by the next run
+                self.unwritten.append(str(error))
         return np.asarray(picture.renders[0])
 
     def _values(self, setting: ImageSetting, scene: str, which: int) -> dict[str, str]:
@@ -177,8 +179,8 @@ def write_record(
 ) -> Path:
     """Write the record of all rows so far and the page; return the page's path.
 
-    asked  how many rows there may be
-    whole  whether no more will come: there are fewer than asked where a renderer has failed
+    asked  how many rows there will be
+    whole  whether no more will come
     """
     title = "" if whole else unfinished(len(rows), max(asked, len(rows)), True)
     record = {

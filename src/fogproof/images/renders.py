@@ -21,6 +21,7 @@ from fogproof.renderers.running import RenderFailure, code_of, render_one
 from fogproof.renderers.table import Renderer
 from fogproof.reports.files import locked
 from fogproof.reports.pages.images import write_renders_page
+from fogproof.scene import ImageScene
 from fogproof.scene.files import read_image_scene
 from fogproof.scene.to_json import to_json
 from fogproof.text import state, unfinished
@@ -56,8 +57,9 @@ class Wanted:
 def render_scenes(scenes: Sequence[Path], wanted: Wanted, folder: Path) -> Iterator[dict[str, Any]]:
     """Render and compare each scene, and yield its row as soon as it is known; what was done before is taken as it is.
 
-    A row says "not rejected", "rejected", "inconclusive", "not rendered" (the renderer has no such thing) or "error", and `kept`
-    if nothing was rendered for it. The scenes' folders are kept from other runs to the end.
+    A row says "not rejected", "rejected", "inconclusive", "not rendered" (the renderer has no such thing) or "error", `kept`
+    if nothing was rendered for it, and `unwritten` why files are not there, if any could not be written. The scenes' folders
+    are kept from other runs to the end.
     """
     places = [folder / name for name in scene_names(scenes)]
     with contextlib.ExitStack() as held:
@@ -65,33 +67,59 @@ def render_scenes(scenes: Sequence[Path], wanted: Wanted, folder: Path) -> Itera
             held.enter_context(locked(place))
         for path, place in zip(scenes, places, strict=True):
             try:
-                scene = json.dumps(to_json(read_image_scene(path)), indent=1)
+                scene = read_image_scene(path)
                 if place not in known:
                     place.mkdir(parents=True, exist_ok=True)
                     held.enter_context(locked(place))
+                row = _kept_or_rendered(path, scene, wanted, place)
             except FogproofError as error:
-                yield _row(path.stem, "error", str(error))
-            else:
-                yield _kept_or_rendered(path, scene, wanted, place)
+                row = _row(path.stem, "error", str(error))
+            except OSError as error:
+                reason = f"{error.strerror or error}: {error.filename or place}"
+                row = _row(path.stem, "error", reason) | {"unwritten": [reason]}
+            yield row
 
 
-def _kept_or_rendered(path: Path, scene: str, wanted: Wanted, place: Path) -> dict[str, Any]:
+def _kept_or_rendered(path: Path, scene: ImageScene, wanted: Wanted, place: Path) -> dict[str, Any]:
     """Return a scene's row; what an earlier run has kept is made again as far as it is missing or changed."""
-    key = _key(scene, wanted)
+    source = json.dumps(to_json(scene), indent=1)
+    key = _key(source, wanted)
     before = kept(place, key)
     if before is not None and not before.changed:
         return {**before.row, "kept": True}
     if before is not None and before.image is not None:
-        write_file(place / "scene.json", scene)
-        row = _compare(path, before.image, wanted, place) | {"seconds": before.row["seconds"]}
-        keep(place, key, row, WRITTEN)
+        row = _compare(path, before.image, scene, wanted, place) | {"seconds": before.row["seconds"]}
+        with _noted(row):
+            write_file(place / "scene.json", source)
+        _keep(place, key, row)
         return {**row, "kept": True}
     started = time.perf_counter()
-    begin(place, key)
+    row = _row(path.stem, "error", "the scene could not be written, and was not rendered")
+    with _noted(row):
+        begin(place, key)
+        write_file(place / "scene.json", source)
+    if "unwritten" in row:
+        return row
     row = _render(path, scene, wanted, place)
     row["seconds"] = f"{time.perf_counter() - started:.1f}"
-    keep(place, key, row, WRITTEN)
+    _keep(place, key, row)
     return row
+
+
+@contextlib.contextmanager
+def _noted(row: dict[str, Any]) -> Iterator[None]:
+    """Write files of a row in this block: if one cannot be, the row says so, and stays."""
+    try:
+        yield
+    except (FogproofError, OSError) as error:
+        row.setdefault("unwritten", []).append(str(error))
+
+
+def _keep(place: Path, key: str, row: dict[str, Any]) -> None:
+    """Keep a row whose files are all there; any other is made again by the next run."""
+    if "unwritten" not in row:
+        with _noted(row):
+            keep(place, key, row, WRITTEN)
 
 
 def write_page(rows: Sequence[dict[str, Any]], wanted: Wanted, folder: Path, asked: int = 0) -> Path:
@@ -103,34 +131,34 @@ def write_page(rows: Sequence[dict[str, Any]], wanted: Wanted, folder: Path, ask
     return write_renders_page(rows, wanted.renderer.name, folder, title)
 
 
-def _key(scene: str, wanted: Wanted) -> str:
+def _key(source: str, wanted: Wanted) -> str:
     """Return what a row depends on, as a digest; a script that the command names is part of it."""
-    parts = [scene.encode(), json.dumps([wanted.tolerance, wanted.alpha]).encode()]
+    parts = [source.encode(), json.dumps([wanted.tolerance, wanted.alpha]).encode()]
     parts += code_of(wanted.renderer, wanted.values)
     return hashlib.blake2b(b"\0".join(parts), digest_size=16).hexdigest()
 
 
-def _render(path: Path, scene: str, wanted: Wanted, place: Path) -> dict[str, Any]:
-    source = write_file(place / "scene.json", scene)
-    out = render_one(wanted.renderer, source, place / "image.exr", wanted.values, wanted.seconds)
+def _render(path: Path, scene: ImageScene, wanted: Wanted, place: Path) -> dict[str, Any]:
+    out = render_one(wanted.renderer, place / "scene.json", place / "image.exr", wanted.values, wanted.seconds)
     if isinstance(out, RenderFailure):
         return _row(path.stem, "not rendered" if out.refused else "error", out.reason)
-    return _compare(path, out, wanted, place)
+    return _compare(path, out, scene, wanted, place)
 
 
-def _compare(path: Path, image: Path, wanted: Wanted, place: Path) -> dict[str, Any]:
+def _compare(path: Path, image: Path, scene: ImageScene, wanted: Wanted, place: Path) -> dict[str, Any]:
     """Return the row of an image, and write its page."""
     try:
-        scene = read_image_scene(place / "scene.json")
         done = compare_image([image], scene, tolerance=wanted.tolerance, alpha=wanted.alpha)
-        page = write_comparison(done, place)
     except FogproofError as error:
         return _row(path.stem, "error", str(error))
     verdict = done.verdict
     resolution = "" if verdict.resolution is None else f"{verdict.resolution.value:.2g}"
     row = _row(path.stem, verdict.outcome, f"{verdict.cause}: {verdict.diagnosis}" if verdict.cause else "")
     told = [f"{ratio:.6g} ({interval.low:.6g} to {interval.high:.6g})" for _, ratio, interval in done.ratios]
-    return row | {"page": f"{path.stem}/{page.name}", "ratio": ", ".join(told), "resolution": resolution}
+    row |= {"ratio": ", ".join(told), "resolution": resolution}
+    with _noted(row):
+        row["page"] = f"{path.stem}/{write_comparison(done, place).name}"
+    return row
 
 
 def _row(scene: str, outcome: str, reason: str) -> dict[str, Any]:

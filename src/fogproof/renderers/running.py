@@ -34,7 +34,10 @@ def render_one(
     """
     beside = out.with_name(f"{out.name}.npy")
     for old in (out, beside):
-        old.unlink(missing_ok=True)
+        try:
+            old.unlink(missing_ok=True)
+        except OSError as error:
+            return RenderFailure(f"cannot remove {old}: {error.strerror or error}")
     command = command_of(renderer, {"scene": str(scene), "out": str(out), **values})
     try:
         ran = run(command, seconds)

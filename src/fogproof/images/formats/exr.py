@@ -88,13 +88,14 @@ def write(path: Path, channels: Channels) -> None:
     exr = _library()
     header = {"compression": exr.ZIP_COMPRESSION, "type": exr.scanlineimage}
     pixels = {name: np.ascontiguousarray(channel, np.float32) for name, channel in channels.items()}
-    with tempfile.TemporaryDirectory() as folder:
-        whole = Path(folder) / "image.exr"
-        try:
+    try:
+        with tempfile.TemporaryDirectory() as folder:
+            whole = Path(folder) / "image.exr"
             exr.File(header, pixels).write(str(whole))
-        except RuntimeError as error:
-            raise InvalidInputError(f"cannot write {path}: {error}", str(path)) from None
-        write_output(path, whole.read_bytes())
+            content = whole.read_bytes()
+    except (RuntimeError, OSError) as error:
+        raise InvalidInputError(f"cannot write {path}: {error}", str(path)) from None
+    write_output(path, content)
 
 
 def _library() -> Any:
