@@ -20,6 +20,7 @@ from fogproof.checks.density.grid import Grid
 from fogproof.checks.density.grid_of_density import grid_of
 from fogproof.checks.density.lattice import lattice
 from fogproof.checks.density.model import Density, Effort, integrated, second_view, unknown
+from fogproof.checks.density.node_rounding import node_rounding
 from fogproof.checks.density.quadrature import Leaves
 from fogproof.checks.density.rounding import Rounded, blurred
 from fogproof.checks.normalisation import FLOOR, effort, pdf_noise
@@ -30,6 +31,7 @@ _LOOKS = {1: 1 << 17, 2: 400_000}  # evenly spread points on so many axes
 _HIGH = 40.0  # times the known law's density: lower ones hold no mass that one of the points could stand for
 _COARSE = 50.0  # times the error that is never rejected: an integral known no better is not known
 _MOST = 2048  # points of one kind that are compared with the polynomials
+_MOVED = 1e-3  # by rounding of its points: an integral known no better says nothing
 _PLAINLY = 2.0  # an integral above it is not 1
 _CONFIRMED = 0.1  # relative: as near as evenly spread points come to an integral that is one
 _LAST = 2.0**-50  # of an end: a few floating-point numbers from it
@@ -41,6 +43,7 @@ _STRANGE = 0.01  # share of the pilot that may not be as the polynomials have it
 class Claim:
     """The integrated density of a continuous domain.
 
+    rounding  of the pdf and of the points it is asked at: what it may add to the integral
     doubt  why the integral is not known, "" if it is
     found  whether looking closer has changed it
     """
@@ -73,7 +76,10 @@ def claimed(subject: Subject, chart: Chart, points: np.ndarray, samples: int, ro
     doubt = _within_rounding(subject, chart, floor)
     doubt = doubt or _doubt(leaves, floor, lambda: second_view(chart, density, pilot, work))
     doubt = doubt or _strange(subject, chart, density, leaves, work, points)
-    return Claim(chart, density, work, rounding, leaves, grid, ranges, doubt)
+    moved = 0.0 if doubt else node_rounding(subject, chart, leaves)
+    if moved > _MOVED:
+        doubt = f"rounding of the points that quadrature asks may move the integral by {moved:.1g}"
+    return Claim(chart, density, work, rounding + moved, leaves, grid, ranges, doubt)
 
 
 def _ranges(chart: Chart, leaves: Leaves, grid: Grid, density: Density) -> Ranges:

@@ -103,14 +103,18 @@ def normalisation(
     return Finding("normalisation", outcome, message, effect=misfit, resolution=resolution, cause=cause)
 
 
-def mean_cosine(subject: Subject, chart: Chart, density: Density, leaves: Leaves, work: Effort) -> Finding:
+def mean_cosine(
+    subject: Subject, chart: Chart, density: Density, leaves: Leaves, work: Effort, rounding: float
+) -> Finding:
     """The mean of x . axis under the pdf must be the declared one: forward means forward."""
     assert subject.mean_cosine is not None
 
     def integrand(c: np.ndarray) -> np.ndarray:
         return density(c) * (chart.to_point(c) @ np.asarray(subject.axis))
 
-    finding = _integral("mean cosine", "sign convention", integrand, leaves, work, subject, subject.mean_cosine)
+    finding = _integral(
+        "mean cosine", "sign convention", integrand, leaves, work, subject, subject.mean_cosine, rounding
+    )
     if finding.outcome == "rejected" and finding.effect is not None:
         mean = finding.effect + subject.mean_cosine
         if abs(mean + subject.mean_cosine) > 1e-3 * abs(subject.mean_cosine) + 1e-6:
@@ -118,7 +122,7 @@ def mean_cosine(subject: Subject, chart: Chart, density: Density, leaves: Leaves
     return finding
 
 
-def albedo(subject: Subject, chart: Chart, leaves: Leaves, work: Effort) -> list[Finding]:
+def albedo(subject: Subject, chart: Chart, leaves: Leaves, work: Effort, rounding: float) -> list[Finding]:
     """The integral of `eval` over the domain must be the declared albedo, channel by channel."""
     assert subject.eval is not None
     assert subject.albedo is not None
@@ -135,16 +139,23 @@ def albedo(subject: Subject, chart: Chart, leaves: Leaves, work: Effort) -> list
             return (f if f.ndim == 1 else f[:, channel]) * chart.jacobian(c)
 
         name = "albedo" if len(claimed) == 1 else f"albedo of channel {channel}"
-        findings.append(_integral(name, "wrong weight", integrand, leaves, work, subject, float(value)))
+        findings.append(_integral(name, "wrong weight", integrand, leaves, work, subject, float(value), rounding))
     return findings
 
 
 def _integral(
-    name: str, cause: str, integrand: Density, leaves: Leaves, work: Effort, subject: Subject, claimed: float
+    name: str,
+    cause: str,
+    integrand: Density,
+    leaves: Leaves,
+    work: Effort,
+    subject: Subject,
+    claimed: float,
+    rounding: float,
 ) -> Finding:
     found = evaluate(integrand, leaves.low, leaves.high)
     found = refine(integrand, found, work.tolerance, work.budget, work.noise)
-    slack = found.total_error + FLOOR[subject.precision] * max(1.0, abs(claimed)) + work.noise
+    slack = found.total_error + (FLOOR[subject.precision] + rounding) * max(1.0, abs(claimed))
     effect = found.total - claimed
     message = f"{name} of the pdf is {found.total:.9g} +- {slack:.1g}, declared {claimed:.9g}"
     outcome: Outcome = "not rejected" if abs(effect) <= slack else "rejected" if np.isfinite(effect) else "inconclusive"

@@ -77,7 +77,8 @@ class Prepared:
         if not tally.given_up:
             return 1 - sum(self.subject.atoms.values()), valid
         total, error = self.integral
-        whole = abs(total + sum(self.subject.atoms.values()) - 1) <= error + FLOOR[self.subject.precision]
+        slack = error + FLOOR[self.subject.precision] + (self.claim.rounding if self.claim else 0.0)
+        whole = abs(total + sum(self.subject.atoms.values()) - 1) <= slack
         return (1 - sum(self.subject.atoms.values()), valid) if whole else (total, tally.drawn)
 
     def unheld(self, tally: Tally) -> tuple[str, ...]:

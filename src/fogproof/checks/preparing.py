@@ -84,9 +84,9 @@ def _prepared(subject: Subject, samples: int, seed: int, pilot: Pilot, chart: Ch
         counter = _counter(subject, grid, count, None, pilot, mixture)
         return Prepared(subject, samples, pilot, claim, counter, tuple(findings), counted)
     if subject.axis is not None and subject.mean_cosine is not None:
-        findings.append(mean_cosine(subject, claim.chart, claim.density, claim.leaves, claim.work))
+        findings.append(mean_cosine(subject, claim.chart, claim.density, claim.leaves, claim.work, claim.rounding))
     if subject.eval is not None and subject.albedo is not None:
-        findings += albedo(subject, claim.chart, claim.leaves, claim.work)
+        findings += albedo(subject, claim.chart, claim.leaves, claim.work, claim.rounding)
     if subject.precision == "float32" and subject.dimensions is not None:
         findings.append(_precision(subject, claim, seed))
     grid, count, beside = claim.grid, claim.chart.count, None
