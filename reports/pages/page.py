@@ -61,6 +61,7 @@ def write_page(run: RunRecord, folder: str | Path) -> Path:
             svg = picture.on_page
             room -= len(svg)
             shown[case.name, index] = Shown(picture, svg if room >= 0 else "")
+    stability, unreadable = stability_beside(folder)
     page = fill(
         "page.html",
         kind=run.kind,
@@ -76,7 +77,8 @@ def write_page(run: RunRecord, folder: str | Path) -> Path:
         catches=catches(run),
         needs=needs(run.cases),
         known=[case for case in cases if case.expected == "rejected"],
-        stability=stability_beside(folder),
+        stability=stability,
+        unreadable=unreadable,
         headline=headline(run),
         tone=_tone(run),
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -82,13 +83,14 @@ def parse_stability(record: Any, origin: str = STABILITY) -> StabilityRecord:
     return validated(StabilityRecord, record, origin)
 
 
-def stability_beside(folder: Path) -> StabilityRecord | None:
-    """Return the record in a folder, None if there is none."""
+def stability_beside(folder: Path) -> tuple[StabilityRecord | None, str]:
+    """Return the record in a folder, None if there is none, and in words why one that is there is not shown."""
     path = folder / STABILITY
-    if not path.exists():
-        return None
+    if not os.path.lexists(path):
+        return None, ""
     try:
-        record = parse_json(read_text(path, "the record"))
+        return parse_stability(parse_json(read_text(path, "the record")), str(path)), ""
+    except InvalidInputError as error:
+        return None, str(error)
     except (ValueError, RecursionError) as error:
-        raise InvalidInputError(f"cannot read {path}: it is not JSON ({error})", str(path)) from None
-    return parse_stability(record, str(path))
+        return None, f"cannot read {path}: it is not JSON ({error})"

@@ -11,6 +11,7 @@ import json
 import os
 import pickle
 import time
+import warnings
 from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError, Future
@@ -19,6 +20,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from fogproof.checks.arguments import whole
 from fogproof.checks.sampler_parts import SamplerCheck
 from fogproof.checks.tally import Tally
 from fogproof.checks.verdict import Verdict
@@ -26,7 +28,7 @@ from fogproof.doing import doing
 from fogproof.errors import FogproofError, InvalidInputError, InvalidValueError, SubjectError
 from fogproof.input_files import open_regular
 from fogproof.whole_files import write_file
-from fogproof.workers.executors import ClusterError, Workers, open_workers
+from fogproof.workers.executors import PATIENCE, ClusterError, Workers, open_workers
 from fogproof.workers.processes import FailedCallError, LostProcessError
 
 SCHEMA = "fogproof tally 1"
@@ -66,9 +68,34 @@ def check_distributed(
         raise InvalidValueError("make", "must return what sampler_check(...) returns", type(check).__name__)
     path = None if keep is None else Path(keep)
     begun = None if path is None or not os.path.lexists(path) else _read(path, check)
-    with open_workers(executor, workers, _PRELOAD) as pool:
-        task = check.tally if executor == "threads" else _Task(check, _pickled(make))
-        return check.run(_Drawing(check, pool, task, path), begun)
+    if workers is not None:
+        workers = whole("workers", workers, 1)
+    if path is not None and begun is None:
+        _write(path, check, check.tally([]))  # better to learn now than later that it cannot be
+    try:
+        with open_workers(executor, workers, _PRELOAD) as pool:
+            task = check.tally if executor == "threads" else _Task(check, _pickled(make))
+            return check.run(_Drawing(check, pool, task, path), begun)
+    except _OthersError:
+        return _of_others(make, check)
+
+
+class _OthersError(Exception):
+    """A worker has drawn for another check."""
+
+
+def _of_others(make: Callable[[], SamplerCheck], check: SamplerCheck) -> Verdict:
+    """Say why a worker's check is another, or judge the sampler here if it is one that draws what it likes."""
+    again = make()
+    if again.seed != check.seed:
+        fix = "give the check a seed: what each worker makes must be the same"
+        raise InvalidValueError("make", "must return the same check whenever it is called", make, fix)
+    if again.fingerprint == check.fingerprint:
+        fix = "give the workers the same versions of your code and of fogproof"
+        raise InvalidValueError(
+            "executor", "must have workers that make the same check as this process", check.fingerprint, fix
+        )
+    return check.run()  # it depends on more than its uniforms, which any process sees
 
 
 @dataclass(frozen=True)
@@ -87,13 +114,20 @@ class _Drawing:
             for part in self._parts(missing):
                 tally = tally.merged(part)
                 doing(f"sample {tally.drawn} of {self.check.prepared.samples} at most")
-                if self.path is not None and time.monotonic() > written + EVERY:
-                    _write(self.path, self.check, tally)
+                if time.monotonic() > written + EVERY:
+                    self._keep(tally)
                     written = time.monotonic()
         finally:
-            if self.path is not None and tally.drawn:
-                _write(self.path, self.check, tally)
+            self._keep(tally)
         return tally
+
+    def _keep(self, tally: Tally) -> None:
+        """Write down what there is; where that fails the check goes on."""
+        if self.path is not None:
+            try:
+                _write(self.path, self.check, tally)
+            except InvalidInputError as error:
+                warnings.warn(f"{error}; what is drawn is judged, and not kept", RuntimeWarning, stacklevel=2)
 
     def _parts(self, missing: range) -> Iterator[Tally]:
         """Yield the tallies of the missing batches in order, drawn by all workers."""
@@ -119,7 +153,7 @@ class _Drawing:
     def _collected(self, part: range, future: Future[Any]) -> Tally:
         for attempt in range(1, _ATTEMPTS + 1):
             try:
-                found = future.result()
+                found = self._waited_for(future)
                 break
             except LostProcessError:
                 if attempt == _ATTEMPTS:
@@ -137,6 +171,17 @@ class _Drawing:
                 raise SubjectError(f"{type(error).__name__}: {error}", "sample") from None
         return self.task.read(found) if isinstance(self.task, _Task) else found
 
+    def _waited_for(self, future: Future[Any]) -> Any:
+        """Return a result; where no worker is left for a while nobody will have one."""
+        while True:
+            try:
+                return future.result(PATIENCE)
+            except TimeoutError:
+                if not future.done() and not self.pool.left():
+                    raise ClusterError(
+                        "the cluster has lost its last worker; what was drawn is kept where `keep` says"
+                    ) from None
+
 
 @dataclass(frozen=True)
 class _Task:
@@ -147,8 +192,7 @@ class _Task:
 
     def read(self, answer: dict[str, Any]) -> Tally:
         if answer["check"] != self.check.fingerprint:
-            fix = "give the check a seed: what each worker makes must be the same"
-            raise InvalidValueError("make", "must return the same check whenever it is called", answer["check"], fix)
+            raise _OthersError
         return self.check.read(answer)
 
 
@@ -179,21 +223,29 @@ def _write(path: Path, check: SamplerCheck, tally: Tally) -> None:
 
 def _read(path: Path, check: SamplerCheck) -> Tally:
     """Return the tally that a file keeps, or say why it is none of this check."""
+    kept = require_kept(path)
+    if kept["check"] != check.fingerprint or kept["alpha"] != check.alpha:
+        what = "keeps samples of another check: another subject, seed, alpha, number of samples or version"
+        raise InvalidInputError(f"{path} {what}; remove it, or choose another place", str(path))
+    return check.read(json.loads(kept["tally"]))
+
+
+def require_kept(path: Path) -> dict[str, Any]:
+    """Return what a file keeps, of whatever check, or say what is wrong with it."""
     try:
         with open_regular(path, "the file of what was drawn") as file:
-            kept = json.loads(file.read())
-        schema, its, alpha = (kept[name] for name in ("schema", "check", "alpha"))
-        text, digest = kept["tally"], kept["digest"]
+            kept: dict[str, Any] = json.loads(file.read())
+        schema, _, _, text, digest = (kept[name] for name in ("schema", "check", "alpha", "tally", "digest"))
     except (ValueError, KeyError, TypeError, RecursionError):
-        raise InvalidInputError(f"{path} keeps no samples of a check; choose another file", str(path)) from None
+        what = "keeps no samples of a check; remove it, and all is drawn anew, or choose another place"
+        raise InvalidInputError(f"{path} {what}", str(path)) from None
     if schema != SCHEMA:
-        raise InvalidInputError(f"{path} is of another version ({schema}); choose another file", str(path))
-    if its != check.fingerprint or alpha != check.alpha:
-        what = "keeps samples of another check: another subject, seed, alpha, number of samples or version"
-        raise InvalidInputError(f"{path} {what}; choose another file", str(path))
+        raise InvalidInputError(
+            f"{path} is of another version ({schema}); remove it, or choose another place", str(path)
+        )
     if not isinstance(text, str) or _digest(text) != digest:
         raise InvalidInputError(f"{path} is damaged; remove it, and all is drawn anew", str(path))
-    return check.read(json.loads(text))
+    return kept
 
 
 def _digest(text: str) -> str:

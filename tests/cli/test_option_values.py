@@ -45,7 +45,7 @@ def test_numbers_that_no_run_can_use_are_bad_usage(tmp_path, monkeypatch, words,
 
 @pytest.mark.parametrize("address", ["nosuch", "nosuch:", ":8786", "nosuch:port", ""])
 def test_an_address_without_host_or_port_is_bad_usage(address):
-    with pytest.raises(InvalidValueError, match="--executor must name host and port, as dask://host:port"):  # noqa: SIM117
+    with pytest.raises(InvalidValueError, match="executor must be threads, processes or dask://host:port"):  # noqa: SIM117
         with open_workers(f"dask://{address}", 1):
             pass
 

@@ -39,7 +39,7 @@ def test_files_agree(run):
     assert [row["formula"] for row in rows] == [row["formula"] for row in record["measured"]]
     assert {row["truth"] for row in rows} == {row["truth"] for row in record["measured"]}
     parsed = parse_stability(record)
-    assert parsed.measured == stability_beside(folder).measured
+    assert parsed.measured == stability_beside(folder)[0].measured
     assert not parsed.broken
 
 
@@ -68,9 +68,9 @@ def test_a_broken_record_is_refused_by_name(run, tmp_path):
     with pytest.raises(InvalidInputError, match="measured"):
         write_stability({**record, "measured": [{}]}, tmp_path)
     (tmp_path / "stability.json").write_text("{")
-    with pytest.raises(InvalidInputError, match="not JSON"):
-        stability_beside(tmp_path)
-    assert stability_beside(tmp_path / "nowhere") is None
+    found, why = stability_beside(tmp_path)
+    assert (found, "not JSON" in why) == (None, True)
+    assert stability_beside(tmp_path / "nowhere") == (None, "")
 
 
 def test_a_page_of_somebody_else_is_not_replaced(tmp_path):
@@ -92,4 +92,4 @@ def test_what_was_reached_is_kept_when_it_is_stopped(tmp_path, monkeypatch, inte
     told = CliRunner().invoke(cli, ["stability", "free_path", "-o", str(tmp_path)], standalone_mode=False)
     assert told.return_value == 130, told.output
     assert "stopped after 1 of" in told.stderr
-    assert {row.formula for row in stability_beside(tmp_path).measured} == {"free_path/density"}
+    assert {row.formula for row in stability_beside(tmp_path)[0].measured} == {"free_path/density"}

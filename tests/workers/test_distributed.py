@@ -3,6 +3,7 @@
 import json
 import os
 import signal
+from concurrent.futures import Future
 from dataclasses import dataclass
 from functools import partial
 
@@ -11,6 +12,8 @@ import pytest
 
 from fogproof import HalfLine, InvalidValueError, check_distributed, distributed, sampler_check
 from fogproof.errors import InvalidInputError, SubjectError
+from fogproof.workers import executors
+from fogproof.workers.executors import ClusterError
 
 SAMPLES = 1_400_000
 
@@ -166,3 +169,81 @@ def test_a_cluster(whole, cluster):
     path = FreePath()
     make = partial(sampler_check, path.sample, path.pdf, HalfLine(0), dimensions=1, samples=SAMPLES, seed=7)
     assert said(check_distributed(make, f"dask://{address}")) == said(whole)
+
+
+class Hidden:
+    """A sampler that draws what it likes, whatever its uniforms are."""
+
+    def sample(self, u):
+        return np.random.default_rng().exponential(size=len(u))
+
+    def pdf(self, x):
+        return np.exp(-x)
+
+
+def test_a_sampler_that_ignores_its_uniforms_is_rejected_wherever_it_is_drawn():
+    for executor in ("threads", "processes"):
+        verdict = check_distributed(partial(check_of, Hidden(), samples=100_000), executor, workers=1)
+        rejected = {finding.check for finding in verdict.findings if finding.outcome == "rejected"}
+        assert "function of its uniforms" in rejected
+
+
+def check_by_place(place):
+    """Of another rate in every process but the first: as if the code there were another version."""
+    return check_of(FreePath(1.0 if os.getpid() == place else 1.01), samples=100_000)
+
+
+def test_workers_of_another_version_are_told():
+    with pytest.raises(InvalidValueError, match="give the workers the same versions of your code"):
+        check_distributed(partial(check_by_place, os.getpid()), "processes", workers=1)
+
+
+def test_what_cannot_be_kept_any_more_is_judged_all_the_same(tmp_path, monkeypatch):
+    make, keep = partial(check_of, FreePath(1.5)), tmp_path / "kept.json"
+    written = distributed.write_file
+
+    def full(path, content):
+        if keep.exists():
+            raise InvalidInputError(f"cannot write {path}: No space left on device", str(path))
+        return written(path, content)
+
+    monkeypatch.setattr(distributed, "write_file", full)
+    with pytest.warns(RuntimeWarning, match="No space left on device; what is drawn is judged, and not kept"):
+        assert check_distributed(make, "threads", keep=keep).outcome == "rejected"
+
+
+def test_what_could_never_be_kept_is_told_before_anything_is_drawn(tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("")
+    monkeypatch.setattr(distributed.SamplerCheck, "run", None)
+    with pytest.raises(InvalidInputError, match="is a file, no folder"):
+        check_distributed(partial(check_of, FreePath()), "threads", keep=tmp_path / "file" / "kept.json")
+
+
+def test_a_cluster_without_workers_is_told(monkeypatch):
+    """At the beginning, and when the last one is lost: nobody waits for ever."""
+    distributed_package = pytest.importorskip("distributed")
+
+    class Scheduler:
+        def __init__(self, *address, **options):
+            pass
+
+        def nthreads(self):
+            return {}
+
+        def close(self, timeout):
+            pass
+
+    monkeypatch.setattr(distributed_package, "Client", Scheduler)
+    with pytest.raises(ClusterError, match="has no worker; start one: dask worker tcp://here:1"):
+        check_distributed(partial(check_of, FreePath()), "dask://here:1")
+
+    monkeypatch.setattr(distributed, "PATIENCE", 0.01)
+    drawing = distributed._Drawing(None, executors.Workers(lambda: None, 1, lambda: 0), None, None)
+    with pytest.raises(ClusterError, match="has lost its last worker"):
+        drawing._waited_for(Future())
+
+
+@pytest.mark.parametrize("workers", [0, -1, 1.5])
+def test_how_many_workers_there_are_is_a_whole_number(workers):
+    with pytest.raises(InvalidValueError, match="workers must"):
+        check_distributed(partial(check_of, FreePath()), "threads", workers=workers)

@@ -10,7 +10,7 @@ FORCE = click.option("--force", is_flag=True, help="Replace files in the folder 
 """The option; `reports.prepare_folder` is the rule behind it."""
 
 
-def take(folder: Path, names: tuple[str, ...], force: bool) -> None:
+def take(folder: Path, names: tuple[str, ...], force: bool | None = None) -> None:
     """Make `folder`, see that files of these names may be written there, and keep it from other commands until this one ends.
 
     A command that ends before it has written anything leaves no folder behind.

@@ -12,6 +12,7 @@ from typing import Any
 import click
 
 from fogproof.cli.force import FORCE, take
+from fogproof.cli.rejections import writing_after
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
 from fogproof.cli.values import FOLDER, PLACE
@@ -66,6 +67,7 @@ def command(
     """
     from fogproof.reports import REPORT, read_record, write_report
     from fogproof.study import read_study, run_study
+    from fogproof.study.conduct import UnwrittenError
     from fogproof.study.trial import has_own
 
     called = shlex.join(["fogproof", *sys.argv[1:]])
@@ -73,17 +75,21 @@ def command(
     if executor == "threads" and has_own(plan):
         executor = "processes"
     take(folder, REPORT, force)
+    unwritten: UnwrittenError | None = None
     with interruptible() as stop:
-        record = run_study(
-            plan,
-            folder,
-            executor=executor,
-            workers=workers,
-            against=against,
-            salvage=salvage,
-            command=called,
-            tell=lambda words: say(f"fogproof: {words}", err=True),
-        )
+        try:
+            record = run_study(
+                plan,
+                folder,
+                executor=executor,
+                workers=workers,
+                against=against,
+                salvage=salvage,
+                command=called,
+                tell=lambda words: say(f"fogproof: {words}", err=True),
+            )
+        except UnwrittenError as error:
+            record, unwritten = error.record, error
     if stop.code:
         if not (folder / "results.json").exists():
             say(f"fogproof: stopped before anything was drawn in this run; start again with: {called}", err=True)
@@ -96,12 +102,14 @@ def command(
     else:
         _print_rows(record)
     _explain(record)
-    page = write_report(read_record(folder), folder, keep=True)
-    say(f"\npage: {page}; seed {record['seed']}", err=True)
     history = record["history"]
-    if history and history["worse"]:
-        return 1
-    return record["exit_code"] or (3 if history and history["gone"] else 0)
+    code = 1 if history and history["worse"] else record["exit_code"] or (3 if history and history["gone"] else 0)
+    with writing_after(code):
+        if unwritten is not None:
+            raise unwritten
+        page = write_report(read_record(folder), folder, keep=True)
+        say(f"\npage: {page}; seed {record['seed']}", err=True)
+    return int(code)
 
 
 def _print_rows(record: dict[str, Any]) -> None:

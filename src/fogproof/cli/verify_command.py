@@ -15,12 +15,13 @@ import click
 from fogproof.checks import fresh_seed
 from fogproof.checks.limits import UnstartedError
 from fogproof.cli.force import FORCE, take
+from fogproof.cli.rejections import writing_after
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import BAD_INPUT, say
 from fogproof.cli.values import FOLDER, PROBABILITY, SECONDS
 from fogproof.text import one_line, p_value
 from fogproof.verify import ALPHA, Result, exit_code, record, reproduce, run, select, shares
-from fogproof.verify.elsewhere import Elsewhere
+from fogproof.verify.elsewhere import SEED, Elsewhere
 from fogproof.verify.selection import require_listed
 from fogproof.workers.executors import require_executor
 
@@ -99,6 +100,7 @@ def command(
         take(folder, REPORT, force)
     elsewhere = _elsewhere(executor, workers, keep)
     if elsewhere is not None:
+        elsewhere.require(chosen)
         seed = elsewhere.seed(seed)
     seed = fresh_seed() if seed is None else seed
     started, clock = datetime.datetime.now(datetime.UTC), time.perf_counter()
@@ -139,7 +141,8 @@ def command(
         if folder is not None:
             from fogproof.reports import write_report
 
-            say(f"report: {write_report(run_record, folder)}", err=True)
+            with writing_after(exit_code(results)):
+                say(f"report: {write_report(run_record, folder)}", err=True)
     return stop.code or unfinished or exit_code(results)
 
 
@@ -148,6 +151,8 @@ def _elsewhere(executor: str, workers: int, keep: Path | None) -> Elsewhere | No
     require_executor(executor)
     if keep is None and executor == "threads":
         return None
+    if keep is not None:
+        take(keep, (SEED,))
     return Elsewhere(executor, workers, None if keep is None else str(keep.resolve()))
 
 

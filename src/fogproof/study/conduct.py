@@ -26,6 +26,14 @@ from fogproof.workers.executors import open_workers
 _PRELOAD = ("fogproof.study.batches",)
 
 
+class UnwrittenError(InvalidInputError):
+    """What a study has come to cannot be written; `record` is what was to be."""
+
+    def __init__(self, error: InvalidInputError, record: dict[str, Any]) -> None:
+        super().__init__(str(error), error.path)
+        self.record = record
+
+
 def run_study(
     study: Study,
     folder: str | Path,
@@ -39,7 +47,7 @@ def run_study(
 ) -> dict[str, Any]:
     """Draw what is missing of a study in its folder, write `results.json` and `results.csv` there, and return the record.
 
-    KeyboardInterrupt goes on after the results of what has been drawn are written.
+    `UnwrittenError` if they cannot be written. KeyboardInterrupt goes on after the results of what has been drawn are written.
 
     executor  "threads", "processes" or "dask://host:port"; in threads of this process one's own estimator may end it
     workers   threads or processes; None for one a core
@@ -82,8 +90,11 @@ def run_study(
 
     if before is not None:
         record["history"] = compare(before, record)
-    write_file(folder / "results.json", json.dumps(record, indent=1, allow_nan=False) + "\n")
-    write_file(folder / "results.csv", table(record))
+    try:
+        write_file(folder / "results.json", json.dumps(record, indent=1, allow_nan=False) + "\n")
+        write_file(folder / "results.csv", table(record))
+    except InvalidInputError as error:
+        raise UnwrittenError(error, record) from None
     if stopped is not None:
         raise stopped
     return record

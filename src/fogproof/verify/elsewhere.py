@@ -7,6 +7,7 @@ import json
 import multiprocessing
 import os
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -16,16 +17,17 @@ from fogproof.catalogue.cases import SamplerCase
 from fogproof.checks import Verdict, fresh_seed
 from fogproof.checks.sampler_parts import SamplerCheck
 from fogproof.checks.streams import BATCH
-from fogproof.distributed import check_distributed
+from fogproof.distributed import check_distributed, require_kept
 from fogproof.errors import InvalidInputError
 from fogproof.input_files import open_regular
 from fogproof.verify.selection import whole
 from fogproof.whole_files import write_file
+from fogproof.workers.executors import open_workers
 
 LEAST = 64 * BATCH
 """Samples of a case from which on others draw for it: fewer are there before a worker has started."""
 
-_SEED = "seed.json"
+SEED = "seed.json"
 _SCHEMA = "fogproof seed 1"
 
 
@@ -46,7 +48,7 @@ class Elsewhere:
         """Return the seed of the run whose samples are kept: the one that is there, or one that is put there."""
         if self.keep is None:
             return seed
-        path = Path(self.keep) / _SEED
+        path = Path(self.keep) / SEED
         if not os.path.lexists(path):
             seed = fresh_seed() if seed is None else seed
             write_file(path, json.dumps({"schema": _SCHEMA, "seed": seed}) + "\n")
@@ -57,6 +59,17 @@ class Elsewhere:
             raise InvalidInputError(f"{self.keep} keeps samples of seed {kept}, not {seed}; {fix}", "--seed")
         return kept
 
+    def require(self, cases: Iterable[Case]) -> None:
+        """Refuse, before anything is drawn, a cluster that does not answer, and files that keep no samples."""
+        with open_workers(self.executor, 1):
+            pass
+        for case in cases:
+            if self.draws_for(case) and self.keep is not None and os.path.lexists(path := self._file(case.name)):
+                require_kept(path)
+
+    def _file(self, name: str) -> Path:
+        return Path(self.keep or "") / _file_of(name)
+
     def draws_for(self, case: Case) -> bool:
         """Return whether a case is worth it; what an estimator draws is judged as it comes, in one process."""
         return isinstance(case, SamplerCase) and case.samples >= LEAST
@@ -66,7 +79,7 @@ class Elsewhere:
         # multiprocessing lets a daemon start no processes, as it would leave them behind: ours end with whoever started them.
         multiprocessing.current_process()._config["daemon"] = False  # type: ignore[attr-defined]
         make = partial(_check_of, os.getcwd() if case.origin else "", case.origin, case.name, alpha, seed)
-        keep = None if self.keep is None else Path(self.keep) / _file_of(case.name)
+        keep = None if self.keep is None else self._file(case.name)
         return check_distributed(make, self.executor, workers=self.workers, keep=keep)
 
 

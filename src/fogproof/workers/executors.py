@@ -19,6 +19,8 @@ from fogproof.workers.processes import Processes
 PATIENCE = 10.0
 """Seconds a scheduler has to answer."""
 
+_DASK = "dask://"
+
 
 class ClusterError(SubjectError):
     """A cluster cannot be reached, or has been lost; what has been drawn is kept."""
@@ -31,10 +33,12 @@ class Workers:
     """An executor and how to get another one.
 
     slots  parts that can be done at the same time
+    left   how many are there now: workers of a cluster come and go
     """
 
     make: Callable[[], Executor]
     slots: int
+    left: Callable[[], int] = lambda: 1
     executor: Executor = field(init=False)
 
     def __post_init__(self) -> None:
@@ -48,8 +52,9 @@ class Workers:
 
 def require_executor(where: str) -> None:
     """Refuse what names no executor; whether a cluster answers is not asked."""
-    if where not in ("threads", "processes") and not where.startswith("dask://"):
-        raise InvalidValueError("--executor", "must be threads, processes or dask://host:port", where)
+    host, _, port = where.removeprefix(_DASK).rpartition(":")
+    if where not in ("threads", "processes") and not (where.startswith(_DASK) and host and port.isdigit()):
+        raise InvalidValueError("executor", "must be threads, processes or dask://host:port", where)
 
 
 def available() -> int:
@@ -64,8 +69,8 @@ def open_workers(where: str, workers: int | None, preload: Sequence[str] = ()) -
     preload  modules that take long to load, for processes
     """
     require_executor(where)
-    if where.startswith("dask://"):
-        with _dask(where.removeprefix("dask://")) as made:
+    if where.startswith(_DASK):
+        with _dask(where.removeprefix(_DASK)) as made:
             yield made
         return
     n = workers or available()
@@ -78,9 +83,6 @@ def open_workers(where: str, workers: int | None, preload: Sequence[str] = ()) -
 
 @contextlib.contextmanager
 def _dask(address: str) -> Iterator[Workers]:
-    host, _, port = address.rpartition(":")
-    if not host or not port.isdigit():
-        raise InvalidValueError("--executor", "must name host and port, as dask://host:port", f"dask://{address}")
     try:
         from distributed import Client
     except ImportError:
@@ -88,11 +90,19 @@ def _dask(address: str) -> Iterator[Workers]:
     try:
         client: Any = Client(f"tcp://{address}", timeout=PATIENCE, set_as_default=False)  # type: ignore[no-untyped-call]
     except (OSError, ValueError) as error:
-        raise ClusterError(f"no Dask scheduler answers at {address}: {error}", "--executor") from None
+        raise ClusterError(f"no Dask scheduler answers at {address}: {error}", "executor") from None
+
+    def slots() -> int:
+        return sum(client.nthreads().values())
+
     try:
-        threads = sum(client.nthreads().values())
+        threads = slots()
+        if not threads:
+            raise ClusterError(
+                f"the cluster at {address} has no worker; start one: dask worker tcp://{address}", "executor"
+            )
         # pure=False: by default equal calls are taken to be one, and copies of its result come back.
-        yield Workers(lambda: client.get_executor(pure=False), max(threads, 1))
+        yield Workers(lambda: client.get_executor(pure=False), threads, slots)
     finally:
         with contextlib.suppress(Exception):  # a cluster that has gone cannot be told goodbye
             client.close(timeout=5)
