@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from fractions import Fraction
 
 import numpy as np
 
@@ -42,7 +44,11 @@ class SphericalTriangle:
 
     @property
     def _determinant(self) -> float:
-        return float(np.linalg.det(self._corners))
+        """Of the unit vectors; from exact rational numbers, since that of a narrow triangle is a small difference."""
+        corners = np.array([self.a, self.b, self.c], dtype=float)
+        (ax, ay, az), (bx, by, bz), (cx, cy, cz) = ([Fraction(x) for x in corner] for corner in corners.tolist())
+        exact = ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
+        return float(exact / math.prod(Fraction(math.hypot(*corner)) for corner in corners.tolist()))
 
     @property
     def measure(self) -> float:

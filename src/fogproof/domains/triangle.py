@@ -2,13 +2,54 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
 
 import numpy as np
 
 from fogproof.domains.law import Law, at_the_ends
 from fogproof.errors import InvalidValueError
 from fogproof.validate import coordinates
+
+
+@dataclass(frozen=True)
+class _Frame:
+    """A triangle on its longest side: apex and foot are measured from the side's start, `origin`.
+
+    along, across  unit vectors of the side and of the height on it
+    length, height  of the triangle; the foot of the height lies `foot` along the side
+    order          which corners are the side's start, its end, and the apex
+    """
+
+    origin: np.ndarray
+    along: np.ndarray
+    across: np.ndarray
+    length: float
+    height: float
+    foot: float
+    order: tuple[int, int, int]
+
+
+def _frame(corners: tuple[tuple[float, ...], ...]) -> _Frame:
+    """Return the frame, rounded from exact rational numbers: the height of a thin triangle is a difference of long vectors."""
+    exact = [[Fraction(number) for number in corner] for corner in corners]
+    sides = [tuple(q - p for p, q in zip(exact[i], exact[i - 2], strict=True)) for i in range(3)]
+    start = max(range(3), key=lambda i: _dot(sides[i], sides[i]))
+    side, beside = sides[start], [-s for s in sides[start - 1]]
+    square = _dot(side, side)
+    share = _dot(side, beside) / square if square else Fraction(0)
+    height = [p - share * q for p, q in zip(beside, side, strict=True)]
+    length, tall = (math.hypot(*map(float, vector)) for vector in (side, height))
+    along, across = (np.array(vector, dtype=float) / (size or 1.0) for vector, size in ((side, length), (height, tall)))
+    order = (start, (start + 1) % 3, (start + 2) % 3)
+    return _Frame(np.array(corners[start]), along, across, length, tall, float(share) * length, order)
+
+
+def _dot(p: Sequence[Fraction], q: Sequence[Fraction]) -> Fraction:
+    return sum((x * y for x, y in zip(p, q, strict=True)), Fraction(0))
 
 
 @dataclass(frozen=True)
@@ -35,48 +76,49 @@ class Triangle:
         """One number an axis of the space around."""
         return (len(self.a),)
 
-    @property
-    def _edges(self) -> np.ndarray:
-        a, b, c = (np.array(corner, dtype=float) for corner in (self.a, self.b, self.c))
-        return np.stack([b - a, c - a])
+    @cached_property
+    def _frame(self) -> _Frame:
+        return _frame((self.a, self.b, self.c))
 
     @property
     def measure(self) -> float:
         """The area."""
-        e = self._edges
-        gram = e @ e.T
-        return float(0.5 * np.sqrt(max(gram[0, 0] * gram[1, 1] - gram[0, 1] ** 2, 0.0)))
+        return 0.5 * self._frame.length * self._frame.height
 
     def _shares(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return (n, 2) how much of b and c is in each point, and (n,) its distance from the triangle's plane."""
-        d, e = x - np.array(self.a, dtype=float), self._edges
-        shares = d @ np.linalg.pinv(e)
-        return shares, np.linalg.norm(d - shares @ e, axis=1)
+        """Return (n, 3) how much of a, b and c is in each point, and (n,) its distance from the triangle's plane."""
+        frame = self._frame
+        d = x - frame.origin
+        along, across = d @ frame.along, d @ frame.across
+        off = np.linalg.norm(d - along[:, None] * frame.along - across[:, None] * frame.across, axis=1)
+        shares = np.empty((len(x), 3))
+        start, end, apex = frame.order
+        shares[:, apex] = across / frame.height
+        shares[:, end] = (along - shares[:, apex] * frame.foot) / frame.length
+        shares[:, start] = 1 - shares[:, apex] - shares[:, end]
+        return shares, off
 
     def contains(self, x: np.ndarray, slack: float) -> np.ndarray:
-        """Return which points lie in the triangle."""
-        (of_b, of_c), off = (lambda pair: (pair[0].T, pair[1]))(self._shares(x))
-        scale = float(np.max(np.abs([self.a, self.b, self.c])))
-        edges = self._edges
-        size = float(np.max(np.abs(edges)))
-        thin = size * size / (2 * self.measure)  # a thin triangle's shares lose as many digits
-        room = max(4 * slack * max(scale / size, 1.0) * thin, at_the_ends(slack))
-        inner = (of_b >= -room) & (of_c >= -room) & (of_b + of_c <= 1 + room)
-        return inner & (off <= 4 * slack * max(scale, size))
+        """Return which points lie in the triangle: they are rounded as the corners' coordinates are, whatever its shape."""
+        shares, off = self._shares(x)
+        scale = max(float(np.max(np.abs([self.a, self.b, self.c]))), self._frame.length)
+        rounding = 4 * slack * scale
+        room = max(rounding / self._frame.height, at_the_ends(slack))
+        return np.all(shares >= -room, axis=1) & (off <= rounding)
 
     def law(self, pilot: np.ndarray) -> Law:
         """Return the uniform law."""
-        a, e = np.array(self.a, dtype=float), self._edges
+        a, b, c = (np.array(corner, dtype=float) for corner in (self.a, self.b, self.c))
         density = 1 / self.measure
 
         def place(u: np.ndarray) -> np.ndarray:
             s = np.sqrt(u[:, :1])
-            return a + (s * (1 - u[:, 1:])) * e[0] + (s * u[:, 1:]) * e[1]
+            return a + (s * (1 - u[:, 1:])) * (b - a) + (s * u[:, 1:]) * (c - a)
 
         def coordinates(x: np.ndarray, v: np.ndarray) -> np.ndarray:
             shares, _ = self._shares(x)
-            s = np.clip(shares.sum(axis=1), 0.0, 1.0)
-            along = np.clip(shares[:, 1] / np.where(s > 0, s, 1.0), 0.0, 1.0)
+            s = np.clip(1 - shares[:, 0], 0.0, 1.0)
+            along = np.clip(shares[:, 2] / np.where(s > 0, s, 1.0), 0.0, 1.0)
             return np.stack([s * s, along], axis=-1)
 
         return Law(("distance from a", "from b to c"), place, coordinates, lambda x: np.full(len(x), density))
