@@ -91,7 +91,7 @@ def test_a_study_stopped_after_few_replicates_is_judged(replicates):
         100, rows, 48, rows[0], np.zeros(0), float("nan"), np.zeros(0), float("nan"), replicates, 0.0, np.empty((0, 4))
     )
     between = between_replicates([level], 1e-6)
-    (variance,) = _against_theory([level], exact, 1e-6, Known(), 0.0, between)
+    (variance,) = _against_theory([level], exact, 1e-6, Known(), 0.0, 0.0, between)
     assert variance.check == "variance"
     assert (between.calls, between.finding is None) == ("independent", replicates == 1)
 

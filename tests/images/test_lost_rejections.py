@@ -3,6 +3,7 @@
 import json
 import os
 import shutil
+import tempfile
 from pathlib import Path
 
 import numpy as np
@@ -139,11 +140,41 @@ def test_a_rejected_render_is_rejected_whatever_is_not_written(monkeypatch, and_
         assert code == (1 if "rejected" in expected else 2)
         assert f"cannot write {lost}: No space left on device" in err
         assert any("unwritten" in row for row in rows) or lost in ("out/results.json", "out/index.html")
+
+
+def test_a_row_whose_files_are_not_all_there_is_made_again(monkeypatch):
+    disk = Disk(monkeypatch)
+    disk.full = lambda _number: disk.written[-1].endswith("out/one/maps.exr")
+    one, two = ends(RENDER)[1]
+    assert (one["page"], two["page"]) == ("", "two/index.html")
     disk.full = lambda _number: False
-    rows = ends(RENDER)[1]
-    assert [(row["outcome"], row["page"]) for row in rows] == [
-        ("rejected", f"{name}/index.html") for name in ("one", "two")
-    ]
+    one, two = ends(RENDER)[1]
+    assert (one["page"], two["page"]) == ("one/index.html", "two/index.html")
+    assert ("kept" in one, "kept" in two) == (False, True)
+
+
+def test_an_image_that_was_kept_is_judged_on_a_full_disk(monkeypatch):
+    before = ends(RENDER)[1]
+    Path("out/one/index.html").unlink()
+    disk = Disk(monkeypatch)
+    disk.full = lambda _number: True
+    code, (one, two), err = ends(RENDER)
+    assert (code, one["outcome"], one["kept"], one["page"]) == (1, "rejected", True, "")
+    assert two == {**before[1], "kept": True}  # nothing of it is missing
+    assert "cannot write out/one/results.json" in err
+    assert "cannot write out/results.json" in err
+    disk.full = lambda _number: False
+    assert ends(RENDER)[1][0]["page"] == "one/index.html"
+
+
+def test_no_folder_for_temporary_files_costs_no_rejection(monkeypatch):
+    def none(*_, **__):
+        raise FileNotFoundError(2, "No usable temporary directory found")
+
+    monkeypatch.setattr(tempfile, "TemporaryDirectory", none)
+    code, (told,), err = ends(COMPARE)
+    assert (code, told["verdict"]["outcome"]) == (1, "rejected")
+    assert "cannot write out/maps.exr: No usable temporary directory found" in err
 
 
 @pytest.mark.parametrize("and_after", [True, False], ids=["from", "only"])

@@ -12,9 +12,9 @@ from typing import Any
 import click
 
 from fogproof.cli.force import FORCE, take
-from fogproof.cli.rejections import writing_after
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import say
+from fogproof.cli.unwritten import Unwritten
 from fogproof.cli.values import FOLDER, PLACE
 from fogproof.text import duration, marked, one_line, unbiased
 
@@ -75,7 +75,7 @@ def command(
     if executor == "threads" and has_own(plan):
         executor = "processes"
     take(folder, REPORT, force)
-    unwritten: UnwrittenError | None = None
+    unwritten = Unwritten()
     with interruptible() as stop:
         try:
             record = run_study(
@@ -89,7 +89,8 @@ def command(
                 tell=lambda words: say(f"fogproof: {words}", err=True),
             )
         except UnwrittenError as error:
-            record, unwritten = error.record, error
+            record = error.record
+            unwritten.tell(str(error))
     if stop.code:
         if not (folder / "results.json").exists():
             say(f"fogproof: stopped before anything was drawn in this run; start again with: {called}", err=True)
@@ -104,12 +105,11 @@ def command(
     _explain(record)
     history = record["history"]
     code = 1 if history and history["worse"] else record["exit_code"] or (3 if history and history["gone"] else 0)
-    with writing_after(code):
-        if unwritten is not None:
-            raise unwritten
-        page = write_report(read_record(folder), folder, keep=True)
-        say(f"\npage: {page}; seed {record['seed']}", err=True)
-    return int(code)
+    if not unwritten.reasons:
+        with unwritten.noted():
+            page = write_report(read_record(folder), folder, keep=True)
+            say(f"\npage: {page}; seed {record['seed']}", err=True)
+    return unwritten.code(code)
 
 
 def _print_rows(record: dict[str, Any]) -> None:

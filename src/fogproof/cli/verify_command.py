@@ -15,9 +15,9 @@ import click
 from fogproof.checks import fresh_seed
 from fogproof.checks.limits import UnstartedError
 from fogproof.cli.force import FORCE, take
-from fogproof.cli.rejections import writing_after
 from fogproof.cli.signals import interruptible
 from fogproof.cli.terminal import BAD_INPUT, say
+from fogproof.cli.unwritten import Unwritten
 from fogproof.cli.values import FOLDER, PROBABILITY, SECONDS
 from fogproof.text import one_line, p_value
 from fogproof.verify import ALPHA, Result, exit_code, record, reproduce, run, select, shares
@@ -105,7 +105,7 @@ def command(
     seed = fresh_seed() if seed is None else seed
     started, clock = datetime.datetime.now(datetime.UTC), time.perf_counter()
     results: list[Result] = []
-    unfinished = 0
+    unfinished, unwritten = 0, Unwritten()
     width = max(len(case.name) for case in chosen)
     if not as_json:
         say(_row(width, "case", "outcome", "smallest p", "resolution", "samples", "seconds"))
@@ -141,9 +141,9 @@ def command(
         if folder is not None:
             from fogproof.reports import write_report
 
-            with writing_after(exit_code(results)):
+            with unwritten.noted():
                 say(f"report: {write_report(run_record, folder)}", err=True)
-    return stop.code or unfinished or exit_code(results)
+    return stop.code or unfinished or unwritten.code(exit_code(results))
 
 
 def _elsewhere(executor: str, workers: int, keep: Path | None) -> Elsewhere | None:

@@ -94,7 +94,9 @@ def write(path: Path, channels: Channels) -> None:
             exr.File(header, pixels).write(str(whole))
             content = whole.read_bytes()
     except (RuntimeError, OSError) as error:
-        raise InvalidInputError(f"cannot write {path}: {error}", str(path)) from None
+        raise InvalidInputError(
+            f"cannot write {path}: {getattr(error, 'strerror', None) or error}", str(path)
+        ) from None
     write_output(path, content)
 
 
