@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fogproof import Interval, Product, SpherePart, UnitHemisphere, UnitSphere, check_sampler
+from fogproof import Interval, Product, SpherePart, SphericalTriangle, UnitHemisphere, UnitSphere, check_sampler
 
 SINGLE = {"dimensions": 2, "precision": "float32", "samples": 50_000}
 OBLIQUE = np.linalg.qr(np.array([[1, 1, 0], [2, 0, 1], [2, 0, 0]]))[0].astype(np.float32)
@@ -109,3 +109,33 @@ def test_they_leave_length_1_where_it_is_forgiven():
         off = np.abs(np.linalg.norm(sample(u).astype(float), axis=1) - 1)
         assert off.max() > 1e-5
         assert 0 < np.mean(off > 4e-6) < 2e-4
+
+
+@pytest.mark.parametrize("scale", [1 + 1e-9, 1 + 1e-6, 1.001, 0.999, 2.0])
+@pytest.mark.parametrize("octant", [False, True])
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+def test_directions_of_a_wrong_length_are_told_by_their_length(scale, octant):
+    """Whatever the length: it is not an end of the domain that they pass, and clamping is no cure."""
+    domain = SphericalTriangle((1, 0, 0), (0, 1, 0), (0, 0, 1)) if octant else UnitSphere()
+    sample = lambda u: scale * (np.abs(sphere(u)) if octant else sphere(u))  # noqa: E731
+    pdf = lambda x: np.full(len(x), 1 / domain.measure)  # noqa: E731
+    verdict = check_sampler(sample, pdf, domain, dimensions=2, samples=2000, seed=1)
+    told = {f.check: f for f in verdict.findings if f.outcome == "rejected"}
+    assert f"a direction is {abs(scale - 1):.2g} too {'long' if scale > 1 else 'short'}" in told["unit length"].message
+    assert told["unit length"].effect == 1
+    assert "clamp" not in str(verdict)
+
+
+def test_a_direction_of_no_length_at_all_is_no_number_of_it():
+    """A vector with a part that is no number, or infinite, is outside the domain."""
+
+    def sample(u):
+        x = sphere(u)
+        x[u[:, 0] < 0.01, 0] = np.nan
+        x[u[:, 0] > 0.99, 1] = np.inf
+        return x
+
+    verdict = check_sampler(sample, even, UnitSphere(), dimensions=2, samples=2000, seed=1)
+    told = {f.check for f in verdict.findings if f.outcome == "rejected"}
+    assert "domain" in told
+    assert "unit length" not in told

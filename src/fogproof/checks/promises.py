@@ -95,10 +95,13 @@ class Watch:
         """Check one batch; return (n,) which samples are good points of the continuous part, and (good,) the pdf there."""
         subject, x = self.subject, draw.x
         within = inside(subject, draw)
-        few = few_digits(subject, x[~within]) or nearly(subject, x, ~within)
+        long = ~within & unit_lengths.off_length(subject, x)
+        few = few_digits(subject, x[~within])
+        near = nearly(subject, x, ~within & ~long)
 
         def outside(i: int) -> str:
-            why = _NO_NUMBER if np.isnan(x[i]).any() else few
+            length = f": {unit_lengths.told(subject, x[i])}" if long[i] else ""
+            why = _NO_NUMBER if np.isnan(x[i]).any() else few or length or near
             return f"x = {shorten(x[i])} is not a point of {subject.domain}{why}"
 
         self._note("domain", ~within, outside, len(x))
@@ -109,8 +112,8 @@ class Watch:
             good = good & draw.valid
         at = np.flatnonzero(good)
         points = x if len(at) == len(x) else x[at]
-        if vector_columns(subject.domain):
-            self._lengths(points)
+        if vector_columns(subject.domain):  # where every length is wrong no point is good
+            self._lengths(x[long | good] if long.any() else points)
         p = subject.density(points)
         self._finite(draw)
         if draw.event is not None and subject.events:

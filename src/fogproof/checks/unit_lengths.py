@@ -19,10 +19,14 @@ _FEW = 4  # samples that may, however few there are
 
 
 def off_length(subject: Subject, x: np.ndarray) -> np.ndarray:
-    """Return (n,) which points hold a vector whose length is off by more than rounding explains in usual samples."""
+    """Return (n,) which points hold a vector whose length is off by more than rounding explains in usual samples.
+
+    What is no number, or infinite, has no length.
+    """
     columns = vector_columns(subject.domain)
-    errors = [np.abs(squared(x[:, first:last]) - 1) > 2 * _USUAL * subject.roundoff for first, last in columns]
-    return np.any(errors, axis=0) if errors else np.zeros(len(x), dtype=bool)
+    with np.errstate(over="ignore", invalid="ignore"):
+        errors = [np.abs(squared(x[:, first:last]) - 1) > 2 * _USUAL * subject.roundoff for first, last in columns]
+    return np.any(errors, axis=0) & np.isfinite(x).all(axis=1) if errors else np.zeros(len(x), dtype=bool)
 
 
 def too_many(count: int, n: int) -> bool:
