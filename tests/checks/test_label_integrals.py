@@ -7,6 +7,7 @@ from label_integrals import deviation, lobes, visible_normals
 from fogproof import UnitHemisphere, check_sampler
 from fogproof.checks.sampled_integrals import reach
 from fogproof.checks.statistics.integrated import Integrated
+from fogproof.checks.statistics.labels import Sums, whole
 
 SEEDS = range(6)
 
@@ -58,3 +59,21 @@ def test_few_high_points_do_not_deny_an_integral(expected):
     assert abs(lone.mean - (base + (high - base) * 9 / n)) > 8 * lone.error, "one of nine expected, by the normal law"
     assert lone.dominated
     assert high / n <= lone.largest < 1.1 * high / n
+
+
+def whole_of(integral, error, variance=1e5):
+    """Return the finding of residuals that sum to 0 beside an integral and its standard error, of 10 000 points."""
+    n = 1e4
+    square = n * (error**2 * n + integral**2)
+    sums = np.array([[0.0], [variance], [0.0], [0.0]])
+    empty = np.empty(0)
+    return whole(
+        "labels", (Sums(sums, sums, np.array([n, n * integral, square, square, 0]), empty, empty, empty),), 1e-7
+    )
+
+
+def test_an_integral_that_is_off_beside_labels_that_are_not_says_why_it_is_no_test():
+    off, near = whole_of(0.977, 0.003), whole_of(0.99, 0.003)
+    assert off.outcome == near.outcome == "not rejected"
+    assert "0.977 +- 0.003, 7.7 standard errors off: no test" in off.message
+    assert near.message.endswith("0.99 +- 0.003")

@@ -1,9 +1,23 @@
 """The pdf against the sampler's own map: right ones of every sort are left alone, and what samples do not show is seen."""
 
+import re
+
 import numpy as np
 import pytest
 
-from fogproof import Box, Discrete, Draw, HalfLine, Interval, Triangle, UnitDisk, UnitSphere, UnitSquare, check_sampler
+from fogproof import (
+    Box,
+    Discrete,
+    Draw,
+    HalfLine,
+    Interval,
+    SphericalTriangle,
+    Triangle,
+    UnitDisk,
+    UnitSphere,
+    UnitSquare,
+    check_sampler,
+)
 from fogproof.catalogue import SamplerCase
 from fogproof.checks.map_density import NAME, map_density
 from fogproof.checks.subject import Subject
@@ -293,3 +307,41 @@ def test_no_right_sampler_of_the_catalogue_is_rejected():
             assert finding.outcome == "not rejected", f"{case.name}: {finding.message}"
             asked += 1
     assert asked > 30
+
+
+def triangle_from_far(s):
+    """Return Arvo's (1995) sampler of the spherical triangle (1, 0, 0), (1, s, 0), (1, 0, 2 s), its solid angle and its domain.
+
+    It loses digits on a small one: differences over tiny steps are noise.
+    """
+    a, b, c = (v / np.linalg.norm(v) for v in np.array([[1, 0, 0], [1, s, 0], [1, 0, 2 * s]]))
+    alpha, area = np.pi / 2, SphericalTriangle(tuple(a), tuple(b), tuple(c)).measure
+    towards = (c - (c @ a) * a) / np.linalg.norm(c - (c @ a) * a)
+
+    def sample(u):
+        sine, cosine = np.sin(u[:, 0] * area - alpha), np.cos(u[:, 0] * area - alpha)
+        p, q = cosine - np.cos(alpha), sine + np.sin(alpha) * (a @ b)
+        x = ((q * cosine - p * sine) * np.cos(alpha) - q) / ((q * sine + p * cosine) * np.sin(alpha))
+        x = np.clip(x, -1, 1)
+        third = x[:, None] * a + np.sqrt(1 - x * x)[:, None] * towards
+        z = 1 - u[:, 1] * (1 - third @ b)
+        across = third - (third @ b)[:, None] * b
+        across /= np.linalg.norm(across, axis=1)[:, None]
+        return z[:, None] * b + np.sqrt(1 - z * z)[:, None] * across
+
+    return sample, area, SphericalTriangle(tuple(a), tuple(b), tuple(c))
+
+
+@pytest.mark.parametrize("factor", [1.02, 1.2])
+def test_what_noise_hides_is_not_called_right(factor):
+    sample, area, domain = triangle_from_far(0.01)
+    finding = found(sample, lambda x: np.full(len(x), 1 / (factor * area)), domain, 2)
+    assert finding.outcome == "not rejected"
+    average, room = map(float, re.findall(r"is ([\d.]+) on average.*more than ([\d.]+) is lacking", finding.message)[0])
+    assert average == pytest.approx(1 / factor, abs=1e-4)
+    assert 1 - average < room < 0.5
+
+
+def test_from_nearer_the_same_is_seen():
+    sample, area, domain = triangle_from_far(0.3)
+    assert found(sample, lambda x: np.full(len(x), 1 / (1.02 * area)), domain, 2).outcome == "rejected"

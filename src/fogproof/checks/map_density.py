@@ -90,7 +90,7 @@ def map_density(subject: Subject, points: np.ndarray, seed: int) -> list[Finding
 
 
 def _judged(subject: Subject, seen: MapDensity) -> Finding:
-    worst, where = 0.0, np.empty(0, dtype=int)
+    worst, where, seen_from = 0.0, np.empty(0, dtype=int), []
     scattered = 1 - float(np.mean(seen.sound[seen.believed]))  # among their neighbours: as if by chance
     for part in _parts(seen.u):
         told = part[seen.sound[part]]
@@ -99,11 +99,14 @@ def _judged(subject: Subject, seen: MapDensity) -> Finding:
         elsewhere = max(1 - len(told) / len(part), scattered) + seen.rare * len(seen.u) / len(part)
         known = _least(seen.volume[told]) - float(np.mean(seen.doubt[told]))
         lacking = min(known, _least(seen.fine[told])) - elsewhere
+        seen_from.append(1 - float(np.mean(seen.volume[told])) - lacking + _TOLERANCE[subject.precision])
         if lacking > max(worst, _TOLERANCE[subject.precision]):
             worst, where = lacking, told
     volume = seen.volume[seen.believed]
     if not len(where):
-        return Finding(NAME, "not rejected", _agreement(volume), effect=max(0.0, 1 - float(np.mean(volume))))
+        return Finding(
+            NAME, "not rejected", _agreement(volume, seen_from[0]), effect=max(0.0, 1 - float(np.mean(volume)))
+        )
     effect = 1 - float(np.mean(seen.volume[where]))
     place = int(where[np.argmin(seen.volume[where])])
     message = (
@@ -124,12 +127,14 @@ def _least(volume: np.ndarray) -> float:
     return lacking if np.isfinite(lacking) else -np.inf
 
 
-def _agreement(volume: np.ndarray) -> str:
+def _agreement(volume: np.ndarray, seen_from: float) -> str:
+    """Return in words what was seen at all uniforms (n,), of which the average tells an error that is larger than `seen_from`."""
     one = np.abs(volume - 1)
     digits = float(np.quantile(one, 0.99))
     if digits < 1e-2:
         return f"pdf times the derivative of the map is 1 to within {digits:.1g} at 99% of {len(volume)} uniforms"
-    return f"pdf times the derivative of the map is nowhere less than 1 on average, at {len(volume)} uniforms"
+    average = f"pdf times the derivative of the map is {np.mean(volume):.5g} on average at {len(volume)} uniforms"
+    return f"{average}; that it is less than 1 tells an error where more than {seen_from:.2g} is lacking"
 
 
 def _parts(u: np.ndarray) -> list[np.ndarray]:
