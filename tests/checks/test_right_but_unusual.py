@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.stats import gamma
 
 from fogproof import (
     Discrete,
@@ -169,3 +170,28 @@ def test_a_border_that_a_user_draws_exactly_forgives_rounding_alone(beyond, outc
     for domain in (part, UnitSphere()):
         found = edge_uniforms(Subject(sample, pdf, domain, 2), {})
         assert found.outcome == outcome, found.message
+
+
+@pytest.mark.parametrize("precision", ["float64", "float32"])
+def test_an_end_before_which_the_density_underflows_is_the_edge_of_its_support(precision):
+    """The quantile at 0 of a gamma law of shape 10^4 is 0; at 6000 the density is what no number holds."""
+    law = gamma(1e4)
+    kind = np.dtype(precision).type
+    sample = lambda u: law.ppf(u[:, 0].astype(float)).astype(kind)  # noqa: E731
+    pdf = lambda x: law.pdf(x).astype(kind).astype(float)  # noqa: E731
+    finding = edge_uniforms(Subject(sample, pdf, HalfLine(0.0), 1, precision=precision), {})
+    assert finding.outcome == "not rejected", finding.message
+
+
+@pytest.mark.parametrize("inner", [False, True])
+def test_a_hole_before_an_end_is_one_and_so_is_an_underflow_inside(inner):
+    """A support that ends at 1 does not reach 0; a point inside, where the density underflows, is no end."""
+    law = gamma(1e4)
+    lost = 3000.0 if inner else 0.0
+
+    def sample(u):
+        return np.where(u[:, 0] == 0, lost, law.ppf(np.maximum(u[:, 0], 2.0**-60)) if inner else 1 + u[:, 0])
+
+    pdf = law.pdf if inner else lambda x: np.where((x >= 1) & (x <= 2), 1.0, 0.0)
+    finding = edge_uniforms(Subject(sample, pdf, HalfLine(0.0), 1), {})
+    assert "not at the edge of its support" in finding.message

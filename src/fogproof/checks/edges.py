@@ -25,6 +25,8 @@ _CORNERS = 64  # tried beyond
 _INWARDS = 2.0**-20  # from an edge, or from 1/2 either way: what the sampler does there is no edge case
 _APPROACH = {"float64": ((500, 1000), (26, 52)), "float32": ((48, 96), (12, 24))}  # uniforms 2^-k that come near 0
 _CLOSER = (0.98, 0.75)  # times as far from the limit as before: what jumps at the edge stays where it is
+_HALVINGS = 64  # of the way to where the density is positive
+_UNDERFLOW = {"float64": 1e-290, "float32": 1e-36}  # densities a step from those that no number holds
 _TOWARDS = (2.0**-8, 2.0**-16, 2.0**-24, 2.0**-32)  # of the way to that point, where the support must have begun
 
 
@@ -98,7 +100,26 @@ def _holes(subject: Subject, u: np.ndarray, draw: Draw) -> np.ndarray:
     bad = np.flatnonzero(good & ~(p > 0))
     if isinstance(subject.domain, Discrete) or not len(bad):
         return bad
-    return bad[np.isnan(p[bad]) | ~(_begins(subject, u[bad], draw.x[bad]) | _approached(subject, u[bad], draw.x[bad]))]
+    at, x = u[bad], draw.x[bad]
+    return bad[
+        np.isnan(p[bad]) | ~(_begins(subject, at, x) | _approached(subject, at, x) | _underflows(subject, at, x))
+    ]
+
+
+def _underflows(subject: Subject, u: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """Return (n,) whether x is an end of a line towards which the density falls until numbers cannot hold it: no hole ends so."""
+    if x.ndim > 1:
+        return np.zeros(len(x), dtype=bool)
+    half = np.full((len(x), 1), 0.5)
+    near = subject.draw_at(np.clip(u, _INWARDS, 1 - _INWARDS).astype(u.dtype)).x
+    at_end = np.isin(subject.domain.law(near).coordinates(x, half)[:, 0], (0.0, 1.0))
+    outer, inner = x.copy(), near.copy()
+    for _ in range(_HALVINGS):
+        middle = outer + 0.5 * (inner - outer)
+        positive = subject.density(middle) > 0
+        outer, inner = np.where(positive, outer, middle), np.where(positive, middle, inner)
+    last = subject.density(inner)
+    return at_end & (last > 0) & (last < _UNDERFLOW[subject.precision])
 
 
 def _begins(subject: Subject, u: np.ndarray, x: np.ndarray) -> np.ndarray:

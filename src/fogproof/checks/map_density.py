@@ -90,7 +90,8 @@ def map_density(subject: Subject, points: np.ndarray, seed: int) -> list[Finding
 
 
 def _judged(subject: Subject, seen: MapDensity) -> Finding:
-    worst, where, seen_from = 0.0, np.empty(0, dtype=int), []
+    worst, where = 0.0, np.empty(0, dtype=int)
+    seen_from: list[float] = []  # what an average must lack, part by part
     scattered = 1 - float(np.mean(seen.sound[seen.believed]))  # among their neighbours: as if by chance
     for part in _parts(seen.u):
         told = part[seen.sound[part]]

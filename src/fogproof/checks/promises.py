@@ -97,11 +97,11 @@ class Watch:
         within = inside(subject, draw)
         long = ~within & unit_lengths.off_length(subject, x)
         few = few_digits(subject, x[~within])
-        near = nearly(subject, x, ~within & ~long)
+        little = nearly(subject, x, ~within & ~long)
 
         def outside(i: int) -> str:
             length = f": {unit_lengths.told(subject, x[i])}" if long[i] else ""
-            why = _NO_NUMBER if np.isnan(x[i]).any() else few or length or near
+            why = _NO_NUMBER if np.isnan(x[i]).any() else few or length or little
             return f"x = {shorten(x[i])} is not a point of {subject.domain}{why}"
 
         self._note("domain", ~within, outside, len(x))
