@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
-from fogproof import Interval, RealLine, UnitSphere, check_sampler
+from fogproof import Interval, RealLine, UnitHemisphere, UnitSphere, check_sampler
 
 
 def cone(cosine, factor=1.0):
@@ -52,3 +52,21 @@ def test_an_integral_that_rounding_hides_is_not_claimed():
     finding = normalisation(sample, pdf, RealLine(), 1)
     assert finding.outcome == "not rejected"
     assert "rounding of the points that quadrature asks" in finding.message
+
+
+def test_a_lobe_that_fills_a_corner_of_boxes_is_integrated():
+    """Normals of Trowbridge and Reitz with widths 1e-7 and 0.5: of the boxes off its ridge it fills a corner alone."""
+    width, turn = np.array([1e-7, 0.5]), np.array([[np.cos(0.6), -np.sin(0.6)], [np.sin(0.6), np.cos(0.6)]])
+
+    def sample(u):
+        slope, phi = np.sqrt(u[:, :1] / (1 - u[:, :1])), 2 * np.pi * u[:, 1]
+        x = np.column_stack([width * slope * np.stack([np.cos(phi), np.sin(phi)], axis=-1) @ turn.T, np.ones(len(u))])
+        return x / np.linalg.norm(x, axis=1)[:, None]
+
+    def pdf(x):
+        squared = (((x[:, :2] @ turn) / width) ** 2).sum(axis=1) + x[:, 2] ** 2
+        return x[:, 2] / (np.pi * width.prod() * squared**2)
+
+    finding = normalisation(sample, pdf, UnitHemisphere(), 2)
+    assert finding.outcome == "not rejected", finding.message
+    assert abs(finding.effect) < 2e-8

@@ -213,3 +213,12 @@ def test_a_stream_without_correlation_that_knows_its_neighbour_is_found(dimensio
     found = next(f for f in verdict.findings if f.check == "serial correlation")
     assert found.outcome == "rejected", str(verdict)
     assert "how far from the middle" in found.message
+
+
+@pytest.mark.parametrize(
+    ("again", "cause"), [([1, 2], "coarse numbers"), ([1, 1], "atom"), ([1, 2, 3, 4], "coarse numbers")]
+)
+def test_different_points_that_come_twice_each_speak_of_few_bits(again, cause):
+    prints = np.concatenate([np.arange(50_000, dtype=np.uint64), np.array(again, dtype=np.uint64)])
+    finding = repeats_test("repeated points", prints, lambda n: 1e-6, 1e-7)
+    assert (finding.outcome, finding.cause) == ("rejected", cause)

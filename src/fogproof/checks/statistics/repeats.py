@@ -160,7 +160,9 @@ def _kind_of_repetition(prints: np.ndarray) -> tuple[str, str]:
     values, inverse, counts = np.unique(prints, return_inverse=True, return_counts=True)
     extra, n = len(prints) - len(values), len(prints)
     often = int(counts.max()) - 1
-    if often >= 0.5 * extra:
+    if often >= 0.5 * extra and (
+        often > 1 or extra == 1
+    ):  # several points that each come twice are none that comes often
         return f"one point comes {often + 1} times", "atom"
     order = np.argsort(inverse, kind="stable")
     again = np.diff(inverse[order]) == 0
