@@ -309,12 +309,16 @@ def test_no_heading_is_stranded_on_paper(browser, pages, name, tmp_path):
     """No page of paper ends with a heading, the first line of a section, or the head of a table."""
     visit(browser, pages[name])
     browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
-    wanted = "h2, h3, h4, summary, thead tr"
     try:
-        script = (
-            f"return [...document.querySelectorAll('{wanted}')].filter(it => it.offsetParent).map(it => it.innerText)"
+        heads, cells = (
+            {
+                "".join(text.split())
+                for text in browser.execute_script(
+                    f"return [...document.querySelectorAll('{wanted}')].filter(it => it.offsetParent).map(it => it.innerText)"
+                )
+            }
+            for wanted in ("h2, h3, h4, summary, thead tr", "dd, dd code, tbody td")
         )
-        heads = {"".join(text.split()) for text in browser.execute_script(script)}
     finally:
         browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
     printed = browser.execute_cdp_cmd("Page.printToPDF", {"paperWidth": 8.27, "paperHeight": 11.69})
@@ -323,7 +327,7 @@ def test_no_heading_is_stranded_on_paper(browser, pages, name, tmp_path):
     sheets = [sheet.split("\n") for sheet in (tmp_path / "page.txt").read_text(encoding="utf-8").split("\f")]
     ends = [["".join(line.split()) for line in sheet if line.strip()][-1:] for sheet in sheets]
     assert len(ends) > 1
-    assert not [end for end in ends if end and end[0] in heads]
+    assert not [end for end in ends if end and end[0] in heads - cells]  # a name that heads its case may end it as well
 
 
 def test_keyboard_reaches_everything(browser, pages):
