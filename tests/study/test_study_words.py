@@ -165,7 +165,9 @@ def test_a_variance_of_0_decides_about_what_is_alike_and_an_exact_one_about_what
 
 
 def test_names_that_somebody_else_wrote_are_kept_as_they_are(told):
-    assert "“Plain, as it should be”" in told[0]["scenes"][0]["answer"]["text"]
+    """On the page; the answer names the soonest alone, and which that is the clock says."""
+    assert "Plain, as it should be" in told[1]
+    assert "plain, as it should be" not in told[1] + told[0]["scenes"][0]["answer"]["text"]
 
 
 def test_no_interval_on_the_page_is_without_sense(told):

@@ -29,9 +29,7 @@ _PRELOAD = ("fogproof.study.batches",)
 class UnwrittenError(InvalidInputError):
     """What a study has come to cannot be written; `record` is what was to be."""
 
-    def __init__(self, error: InvalidInputError, record: dict[str, Any]) -> None:
-        super().__init__(str(error), error.path)
-        self.record = record
+    record: dict[str, Any]
 
 
 def run_study(
@@ -94,7 +92,9 @@ def run_study(
         write_file(folder / "results.json", json.dumps(record, indent=1, allow_nan=False) + "\n")
         write_file(folder / "results.csv", table(record))
     except InvalidInputError as error:
-        raise UnwrittenError(error, record) from None
+        unwritten = UnwrittenError(str(error), error.path)
+        unwritten.record = record
+        raise unwritten from None
     if stopped is not None:
         raise stopped
     return record
