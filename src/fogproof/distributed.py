@@ -109,6 +109,8 @@ class _Drawing:
 
     def __call__(self, tally: Tally, batches: int) -> Tally:
         missing = range(len(tally.batches), batches)
+        if not missing:
+            return tally  # all that was kept: nothing is written anew
         written = time.monotonic()
         try:
             for part in self._parts(missing):
